@@ -1,0 +1,58 @@
+# Everything runs in a virtual environment of the project's own; nothing needs to be installed beforehand but
+# python3 (3.11 or newer), pip and make. Choose another interpreter with `make PYTHON=python3.13 …`.
+PYTHON ?= python3
+VENV ?= .venv
+BIN := $(VENV)/bin
+# pip installs from outside, so that the environment needs no pip of its own (Debian ships venv without it).
+PIP := $(PYTHON) -m pip --python $(BIN)/python --disable-pip-version-check
+
+.PHONY: help demo test check lint types notebooks diagrams bench clean
+
+help:
+	@echo "make demo       run the paper's line formation and say where the pictures are"
+	@echo "make test       run the whole test suite"
+	@echo "make check      lint, types and tests"
+	@echo "make diagrams   export the pictures in diagrams/ anew"
+	@echo "make bench      measure speed"
+	@echo "make clean      remove the environment and all results"
+
+demo: $(VENV)/installed
+	$(BIN)/drake-formation run diagrams/line.yaml --out out/line
+
+test: $(VENV)/installed-dev
+	$(BIN)/python -m pytest $(PYTEST)
+
+check: lint types test
+
+lint: $(VENV)/installed-dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: $(VENV)/installed-dev
+	$(BIN)/mypy
+
+diagrams: $(VENV)/installed
+	for name in line quadrilateral octagon; do \
+		$(BIN)/drake-formation graphviz $$name -o diagrams/$$name.svg || exit; \
+	done
+	$(BIN)/drake-formation run line --out out/line
+	cp out/line/figures/paths.png diagrams/line-paths.png
+
+bench: $(VENV)/installed-dev
+	$(BIN)/python tests/benchmarks/bench.py
+
+clean:
+	rm -rf $(VENV) out build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis
+
+$(BIN)/python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+		{ echo "$(PYTHON) is older than 3.11; give a newer one: make PYTHON=python3.12 …"; exit 1; }
+	$(PYTHON) -m venv --without-pip $(VENV)
+
+$(VENV)/installed: pyproject.toml | $(BIN)/python
+	$(PIP) install --quiet --editable .
+	@touch $@
+
+$(VENV)/installed-dev: pyproject.toml | $(BIN)/python
+	$(PIP) install --quiet --editable '.[dev]'
+	@touch $@ $(VENV)/installed

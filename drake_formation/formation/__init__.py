@@ -1,0 +1,1 @@
+"""Formations as geometry and graphs: who stands where, and who is coupled to whom."""

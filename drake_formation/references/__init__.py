@@ -1,0 +1,1 @@
+"""Sources of the reference: where the formation centre should be."""

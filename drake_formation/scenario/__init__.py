@@ -1,0 +1,19 @@
+"""Scenarios: what a user writes, checked before Drake sees it."""
+
+from drake_formation.scenario.errors import Fault, ScenarioError
+from drake_formation.scenario.export import dump_scenario, json_schema, to_yaml
+from drake_formation.scenario.load import load_scenario, require_sound, shipped_scenarios, with_overrides
+from drake_formation.scenario.schema import Scenario
+
+__all__ = [
+    "Fault",
+    "Scenario",
+    "ScenarioError",
+    "dump_scenario",
+    "json_schema",
+    "load_scenario",
+    "require_sound",
+    "shipped_scenarios",
+    "to_yaml",
+    "with_overrides",
+]

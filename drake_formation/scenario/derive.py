@@ -1,0 +1,117 @@
+"""What follows from a scenario's fields: slots, starting positions, graphs and matrices as arrays.
+
+Every function takes a scenario that has passed :mod:`drake_formation.scenario.checks`.
+"""
+
+import networkx as nx
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from drake_formation.formation import graphs, shapes
+from drake_formation.scenario.schema import (
+    FormationStart,
+    Grid,
+    Line,
+    Polygon,
+    RandomStart,
+    Scenario,
+    Shape,
+    Slots,
+)
+
+Array = NDArray[np.float64]
+
+
+def robot_count(shape: Shape) -> int:
+    """Number of robots N of a shape."""
+    if isinstance(shape, Slots):
+        return len(shape.slots)
+    return shape.rows * shape.columns if isinstance(shape, Grid) else shape.robots
+
+
+def slots(scenario: Scenario) -> Array:
+    """Slots h_i relative to the formation centre (m), shape (N, 2)."""
+    shape = scenario.formation
+    if isinstance(shape, Slots):
+        return np.array(shape.slots, dtype=float)
+    if isinstance(shape, Line):
+        return shapes.line(shape.robots, shape.side, shape.heading)
+    if isinstance(shape, Grid):
+        return shapes.grid(shape.rows, shape.columns, shape.side)
+    return shapes.polygon(shape.robots, polygon_side(shape), shape.heading)
+
+
+def polygon_side(shape: Polygon) -> float:
+    """Side of a polygon (m), given directly or by its width across flats.
+
+    Raises:
+        ValueError: neither or both are given, or a width for an odd number of robots.
+    """
+    if shape.side is not None and shape.width is None:
+        return shape.side
+    if shape.width is not None and shape.side is None:
+        return shapes.side_from_width(shape.robots, shape.width)
+    raise ValueError("give either side or width")
+
+
+def starts(scenario: Scenario) -> Array:
+    """Starting positions (m, world frame), shape (N, 2)."""
+    start = scenario.robots.start
+    if isinstance(start, FormationStart):
+        return np.asarray(start.centre) + slots(scenario)
+    if isinstance(start, RandomStart):
+        box = start.random
+        count = robot_count(scenario.formation)
+        offsets: Array = np.random.default_rng(box.seed).uniform(-box.spread, box.spread, (count, 2))
+        offsets -= offsets.mean(axis=0)
+        return np.asarray(box.about) + offsets
+    return np.array(start, dtype=float)
+
+
+def aggregation_centre(scenario: Scenario) -> Array:
+    """Where the formation gathers: the mean of the starting positions (m), shape (2,)."""
+    centre: Array = starts(scenario).mean(axis=0)
+    return centre
+
+
+def graph(topology: str | tuple[tuple[int, int], ...], robots: int) -> nx.Graph:
+    """A scenario's graph (robots numbered from 1) as a graph on 0 … N-1."""
+    if isinstance(topology, str):
+        return graphs.graph(topology, robots)
+    return graphs.graph([(i - 1, j - 1) for i, j in topology], robots)
+
+
+def spring_graph(scenario: Scenario) -> nx.Graph:
+    """The physical graph: robots coupled by the object."""
+    return graph(scenario.springs.graph, robot_count(scenario.formation))
+
+
+def communication_graph(scenario: Scenario) -> nx.Graph:
+    """The communication graph: robots that exchange their states."""
+    return graph(scenario.consensus.graph, robot_count(scenario.formation))
+
+
+def masses(scenario: Scenario) -> Array:
+    """Mass of every robot (kg), shape (N,)."""
+    return each(scenario.robots.mass, robot_count(scenario.formation))
+
+
+def each(value: ArrayLike, count: int) -> Array:
+    """One number for all, or one for each, as an array of shape (count,)."""
+    return np.broadcast_to(np.asarray(value, dtype=float), (count,))
+
+
+def cost_matrix(value: ArrayLike, size: int) -> Array:
+    """An LQR cost, shape (size, size), from a multiple of the identity, a diagonal or the matrix itself."""
+    array = np.asarray(value, dtype=float)
+    return array if array.ndim == 2 else np.diag(np.broadcast_to(array, (size,)))
+
+
+def hand_off_time(scenario: Scenario) -> float:
+    """Time at which the object is placed on the robots (s)."""
+    return scenario.simulator.start_time + scenario.aggregation.duration
+
+
+def end_time(scenario: Scenario) -> float:
+    """Time at which the scenario ends (s)."""
+    return hand_off_time(scenario) + scenario.transport.duration

@@ -1,0 +1,151 @@
+"""The schema in words: what may stand at a place of a scenario."""
+
+import types
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
+
+from annotated_types import Ge, Gt, Le, MinLen
+from pydantic import Tag
+from pydantic.fields import FieldInfo
+
+from drake_formation.scenario.errors import Path
+from drake_formation.scenario.schema import Scenario, Section
+
+
+@dataclass(frozen=True)
+class Place:
+    """A place of the schema.
+
+    Attributes:
+        path: where it is in a scenario.
+        section: the section around it.
+        annotation: what its value may be; None for an unknown key.
+        description: what its field means, with the unit.
+    """
+
+    path: Path
+    section: type[Section]
+    annotation: Any
+    description: str
+
+    @property
+    def allowed(self) -> str:
+        """What may stand here, in words."""
+        return " — ".join(filter(None, [phrase(self.annotation), self.description]))
+
+
+def locate(loc: Path) -> Place:
+    """The place of a pydantic error.
+
+    Args:
+        loc: pydantic's location, which also names the branch taken at every union; a user wrote no such name.
+    """
+    path: Path = ()
+    section: type[Section] = Scenario
+    here: Any = Scenario
+    annotation: Any = Scenario
+    description = ""
+    for part in loc:
+        bare, _ = _unwrapped(annotation)
+        if _is_union(bare):
+            annotation = next(branch for branch in get_args(bare) if _tag(branch) == part)
+            continue
+        path = (*path, part)
+        if not _is_section(bare):
+            here = annotation = _item(bare, part)
+            continue
+        section = bare
+        field = bare.model_fields.get(part)
+        if field is None:
+            return Place(path, section, None, "")
+        here = annotation = Annotated[field.annotation, *field.metadata] if field.metadata else field.annotation
+        description = field.description or ""
+    return Place(path, section, here, description)
+
+
+def phrase(annotation: Any) -> str:
+    """What a type allows, in words."""
+    bare, bounds = _unwrapped(annotation)
+    if _is_union(bare):
+        return " or ".join(phrase(branch) for branch in get_args(bare))
+    if get_origin(bare) is Literal:
+        return ", ".join(map(str, get_args(bare)))
+    if get_origin(bare) is tuple:
+        return _list_phrase(get_args(bare), bounds)
+    if _is_section(bare):
+        return f"a mapping {{{', '.join(bare.model_fields)}}}"
+    return " ".join([_NAMES[bare], " and ".join(bounds)]).strip()
+
+
+def names(annotation: Any) -> list[str]:
+    """Names among which a value may choose: literals, or the shapes of a union of sections."""
+    bare, _ = _unwrapped(annotation)
+    if get_origin(bare) is Literal:
+        return [str(name) for name in get_args(bare)]
+    if _is_section(bare):
+        return names(bare.model_fields["shape"].annotation) if "shape" in bare.model_fields else []
+    return [name for branch in get_args(bare) for name in names(branch)] if _is_union(bare) else []
+
+
+_NAMES: dict[Any, str] = {
+    bool: "true or false",
+    int: "a whole number",
+    float: "a number",
+    str: "text",
+    type(None): "null",
+}
+
+
+def _list_phrase(items: tuple[Any, ...], bounds: list[str]) -> str:
+    if items[-1] is not Ellipsis:
+        return f"a list of {len(items)}, each {phrase(items[0])}"
+    return " ".join(["a list", *bounds]) + f", each {phrase(items[0])}"
+
+
+def _unwrapped(annotation: Any) -> tuple[Any, list[str]]:
+    """A type without what annotates it and without an optional null, and its bounds in words."""
+    bounds: list[str] = []
+    if get_origin(annotation) is Annotated:
+        annotation, *metadata = get_args(annotation)
+        for item in metadata:
+            bounds += [_bound(part) for part in (item.metadata if isinstance(item, FieldInfo) else [item])]
+    if _is_union(annotation) and type(None) in get_args(annotation):
+        (annotation,) = (branch for branch in get_args(annotation) if branch is not type(None))
+        annotation, inner = _unwrapped(annotation)
+        bounds += inner
+    return annotation, [bound for bound in bounds if bound]
+
+
+def _bound(constraint: Any) -> str:
+    match constraint:
+        case Gt(gt=limit):
+            return f"> {limit:.10g}"
+        case Ge(ge=limit):
+            return f">= {limit:.10g}"
+        case Le(le=limit):
+            return f"<= {limit:.10g}"
+        case MinLen(min_length=length):
+            return f"of at least {length}"
+    return ""
+
+
+def _item(bare: Any, index: str | int) -> Any:
+    """Type of an entry of a list."""
+    items = get_args(bare)
+    return items[0] if items[-1] is Ellipsis else items[min(int(index), len(items) - 1)]
+
+
+def _tag(branch: Any) -> str:
+    """Pydantic's name of a branch of a union."""
+    for item in get_args(branch)[1:] if get_origin(branch) is Annotated else ():
+        if isinstance(item, Tag):
+            return item.tag
+    return names(branch)[0]
+
+
+def _is_union(bare: Any) -> bool:
+    return get_origin(bare) in (Union, types.UnionType)
+
+
+def _is_section(bare: Any) -> bool:
+    return isinstance(bare, type) and issubclass(bare, Section)

@@ -1,0 +1,78 @@
+"""Loading scenarios: the shipped ones by name, others from files, and variants of them."""
+
+from pathlib import Path
+
+from drake_formation.scenario.checks import check
+from drake_formation.scenario.errors import Fault, ScenarioError, nearest
+from drake_formation.scenario.overrides import Overrides, apply, plain
+from drake_formation.scenario.schema import Scenario
+from drake_formation.scenario.source import Document, read
+from drake_formation.scenario.validate import validate
+
+
+def load_scenario(source: str | Path, *, overrides: Overrides | None = None) -> Scenario:
+    """Load a scenario.
+
+    Args:
+        source: a file, or the name of a shipped scenario such as ``line``. A file of that name comes first.
+        overrides: values to replace, as dotted paths to values (``{"springs.stiffness": 3e4}``) or as texts
+            ``PATH=VALUE`` with VALUE in YAML.
+
+    Returns:
+        The scenario, sound in every respect that can be checked before it is simulated.
+
+    Raises:
+        ScenarioError: with all faults found, each with file and line or with the override it came from.
+    """
+    return validate(apply(read(_file(source)), overrides))
+
+
+def with_overrides(scenario: Scenario, overrides: Overrides) -> Scenario:
+    """A variant of a scenario.
+
+    Args:
+        scenario: left as it is.
+        overrides: as for :func:`load_scenario`.
+
+    Raises:
+        ScenarioError: with all faults of the variant.
+    """
+    return validate(apply(Document(_called(scenario), plain(scenario)), overrides))
+
+
+def require_sound(scenario: Scenario) -> None:
+    """Check a scenario that was built in Python.
+
+    Raises:
+        ScenarioError: with all faults that concern several fields; pydantic has checked the single ones.
+    """
+    if faults := check(scenario):
+        raise Document(_called(scenario), {}).attributed(faults)
+
+
+def shipped_scenarios() -> dict[str, Path]:
+    """Files of the scenarios that come with the package, by name."""
+    package = Path(__file__).parents[1]
+    # A wheel carries the scenarios inside the package; in a checkout they stand beside it.
+    folder = next((path for path in (package / "diagrams", package.parent / "diagrams") if path.is_dir()), package)
+    return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
+
+
+def _file(source: str | Path) -> Path:
+    shipped = shipped_scenarios()
+    path = Path(source)
+    try:
+        exists, folder = path.exists(), path.is_dir()
+    except (OSError, ValueError) as error:
+        raise ScenarioError([Fault((), f"not a usable path: {error}", origin=str(source))]) from error
+    if exists and not folder:
+        return path
+    if str(source) in shipped:
+        return shipped[str(source)]
+    message = "a folder, not a file" if folder else "no such file or shipped scenario"
+    allowed = f"a file, {', '.join(shipped)}"
+    raise ScenarioError([Fault((), message, "", allowed, nearest(path.stem, shipped), origin=str(source))])
+
+
+def _called(scenario: Scenario) -> str:
+    return f"scenario {scenario.name!r}"

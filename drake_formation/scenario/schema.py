@@ -1,0 +1,273 @@
+"""What a user may write in a scenario, field by field, with units and sources.
+
+The models are strict: an unknown key, a number in quotes or a NaN is an error, never a guess. What concerns
+one field alone is declared here; what concerns several fields at once is in :mod:`drake_formation.scenario.checks`.
+Sources: *published* is printed in the paper, *inferred* follows from what it prints, *chosen* is this project's.
+"""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
+
+MOST_ROBOTS = 1000
+"""A complete graph among more robots has a million channels and more."""
+
+Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
+"""A coordinate (m). Farther out, rounding would eat the millimetres between robots."""
+
+Length = Annotated[float, Field(gt=0, le=1e6)]
+"""A length (m), bounded as coordinates are."""
+
+Point = Annotated[tuple[Coordinate, Coordinate], Field(strict=False)]
+"""Two coordinates in the world frame (m)."""
+
+NonNegative = Annotated[float, Field(ge=0)]
+Positive = Annotated[float, Field(gt=0)]
+
+
+def _scalar_or_list(value: Any) -> str:
+    return "list" if isinstance(value, list | tuple) else "scalar"
+
+
+def _named_or_edges(value: Any) -> str:
+    return "edges" if isinstance(value, list | tuple) else "named"
+
+
+def _start_kind(value: Any) -> str:
+    if isinstance(value, RandomStart) or (isinstance(value, dict) and "random" in value):
+        return "random"
+    if isinstance(value, dict | FormationStart):
+        return "formation"
+    return "positions"
+
+
+def _cost_kind(value: Any) -> str:
+    if not isinstance(value, list | tuple):
+        return "scalar"
+    return "matrix" if value and isinstance(value[0], list | tuple) else "diagonal"
+
+
+PositiveEach = Annotated[
+    Annotated[Positive, Tag("scalar")] | Annotated[tuple[Positive, ...], Field(strict=False), Tag("list")],
+    Discriminator(_scalar_or_list),
+]
+"""One number for all, or one for each."""
+
+NonNegativeEach = Annotated[
+    Annotated[NonNegative, Tag("scalar")] | Annotated[tuple[NonNegative, ...], Field(strict=False), Tag("list")],
+    Discriminator(_scalar_or_list),
+]
+"""One number for all, or one for each."""
+
+Edge = Annotated[tuple[int, int], Field(strict=False)]
+"""Two robots, numbered from 1."""
+
+Graph = Annotated[
+    Annotated[Literal["complete", "cycle", "path", "star"], Tag("named")]
+    | Annotated[tuple[Edge, ...], Field(strict=False), Tag("edges")],
+    Discriminator(_named_or_edges),
+]
+
+Row = Annotated[tuple[float, ...], Field(strict=False)]
+CostMatrix = Annotated[
+    Annotated[float, Tag("scalar")]
+    | Annotated[Row, Tag("diagonal")]
+    | Annotated[tuple[Row, ...], Field(strict=False), Tag("matrix")],
+    Discriminator(_cost_kind),
+]
+"""A multiple of the identity, a diagonal, or the whole matrix."""
+
+
+class Section(BaseModel):
+    """A mapping of the scenario: strict, frozen, finite."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class Line(Section):
+    """Robots in a row through the formation centre."""
+
+    shape: Literal["line"] = Field(description="shape of the formation")
+    robots: int = Field(ge=1, le=MOST_ROBOTS, description="number of robots N")
+    side: Length = Field(description="distance between neighbours (m)")
+    heading: float = Field(
+        default=90.0, description="direction from the first robot to the last, from +x counter-clockwise (deg)"
+    )
+
+
+class Polygon(Section):
+    """Robots on the corners of a regular polygon, counter-clockwise.
+
+    By default the first robot is the left end of a horizontal top edge (as the paper numbers its square).
+    """
+
+    shape: Literal["polygon"] = Field(description="shape of the formation")
+    robots: int = Field(ge=2, le=MOST_ROBOTS, description="number of robots N, one a corner")
+    side: Length | None = Field(default=None, description="length of a side (m); give this or width")
+    width: Length | None = Field(
+        default=None, description="width across flats (m), for 4, 6, 8 … robots; give this or side"
+    )
+    heading: float | None = Field(
+        default=None, description="direction from the centre to the first robot, from +x counter-clockwise (deg)"
+    )
+
+
+class Grid(Section):
+    """Robots on a rectangular grid, row by row from the upper left."""
+
+    shape: Literal["grid"] = Field(description="shape of the formation")
+    rows: int = Field(ge=1, le=MOST_ROBOTS, description="number of rows")
+    columns: int = Field(ge=1, le=MOST_ROBOTS, description="robots in a row")
+    side: Length = Field(description="distance between neighbours (m)")
+
+
+class Slots(Section):
+    """Explicit slots."""
+
+    shape: Literal["slots"] = Field(description="shape of the formation")
+    slots: tuple[Point, ...] = Field(
+        strict=False, min_length=1, description="slot h_i of each robot relative to the formation centre (m)"
+    )
+
+
+Shape = Annotated[Line | Polygon | Grid | Slots, Field(discriminator="shape")]
+
+
+class RandomBox(Section):
+    """Uniform in a square, then shifted so that the mean is exactly its middle."""
+
+    seed: int = Field(ge=0, description="seed of NumPy's default generator")
+    about: Point = Field(description="mean of the starting positions (m)")
+    spread: Length = Field(description="half the side of the square (m)")
+
+
+class RandomStart(Section):
+    """Random starting positions."""
+
+    random: RandomBox
+
+
+class FormationStart(Section):
+    """Starting positions in formation."""
+
+    centre: Point = Field(description="formation centre; every robot starts in its slot about it (m)")
+
+
+Start = Annotated[
+    Annotated[tuple[Point, ...], Field(strict=False, min_length=1), Tag("positions")]
+    | Annotated[RandomStart, Tag("random")]
+    | Annotated[FormationStart, Tag("formation")],
+    Discriminator(_start_kind),
+]
+
+
+class Robots(Section):
+    """The plants (paper, Eq. 3)."""
+
+    start: Start = Field(description="starting positions: a list (m), {random: ...} or {centre: ...}; all at rest")
+    mass: PositiveEach = Field(default=40.0, description="mass m_i (kg), one for all or one a robot; published: 40")
+
+
+class Springs(Section):
+    """The carried object as springs between robots (paper, Eq. 2)."""
+
+    graph: Graph = Field(default="complete", description="which robots the object couples; paper: complete")
+    law: Literal["hookean", "linear"] = Field(
+        default="hookean", description="hookean acts along the line (Eq. 2); linear is the paper's Eqs. 4-7"
+    )
+    stiffness: NonNegativeEach = Field(
+        default=1.45, description="k_ij (N/m), one for all or one an edge; published: 1.45 rubber, 3e4 steel"
+    )
+    damping: NonNegativeEach = Field(
+        default=0.0, description="c_ij (N s/m), one for all or one an edge; published: none"
+    )
+
+
+class Tracking(Section):
+    """The local LQR (paper, Eqs. 9-12)."""
+
+    Q: CostMatrix = Field(
+        default=1.0, description="state cost, 4 x 4: a number times I, a diagonal or a matrix; published: I"
+    )
+    R: CostMatrix = Field(
+        default=1.0, description="input cost, 2 x 2: a number times I, a diagonal or a matrix; published: I"
+    )
+
+
+class Consensus(Section):
+    """The virtual springs over the communication graph (paper, Eqs. 15-17)."""
+
+    graph: Graph = Field(default="complete", description="which robots talk, both ways; paper: complete")
+    delta: NonNegative = Field(default=0.0, description="consensus gain δ (N/m); published: 0, 1e4, 2e4")
+    delta_v: NonNegative = Field(default=0.0, description="velocity consensus gain δ_v (N s/m); paper: 0")
+
+
+class Obstacle(Section):
+    """A round obstacle; at radius 0 a point, as in the paper."""
+
+    position: Point = Field(description="centre (m)")
+    radius: NonNegative = Field(default=0.0, le=1e6, description="radius (m)")
+
+
+class Avoidance(Section):
+    """Khatib's repulsive potential around obstacles sensed during transport."""
+
+    obstacles: tuple[Obstacle, ...] = Field(default=(), strict=False, description="the obstacles")
+    range: Length = Field(default=1.3, description="sensing range ρ0 (m); inferred: 1.3")
+    gain: NonNegative = Field(default=31.56, description="repulsive gain η (N m²); inferred: 31.56")
+    sensing: Literal["in_range", "nearest"] = Field(
+        default="in_range",
+        description="in_range: every robot within range feels an obstacle; nearest: only the one nearest to it",
+    )
+
+
+class Aggregation(Section):
+    """The phase before the object is placed: no springs, no obstacles, slots about the mean of the starts."""
+
+    duration: NonNegative = Field(
+        default=0.0, description="T_agg (s), hand-off at its end; 0 starts at transport; inferred: 60, 30, 40"
+    )
+
+
+class Transport(Section):
+    """The phase in which the object is carried to the goal."""
+
+    goal: Point = Field(description="where the formation centre is carried to (m)")
+    duration: Positive = Field(default=60.0, description="how long (s); chosen: 60")
+
+
+class Simulation(Section):
+    """Drake's ``SimulatorConfig``: the fields that every supported version of Drake has."""
+
+    integration_scheme: str = Field(default="runge_kutta5", description="one of Drake's integration schemes")
+    max_step_size: Positive = Field(default=0.1, description="largest step (s)")
+    accuracy: Positive = Field(
+        default=1e-6, description="target accuracy of an error-controlled step; chosen: positions within 1e-4 m"
+    )
+    use_error_control: bool = Field(
+        default=True,
+        description="adapt the step to the accuracy; as in Drake, a scheme without error estimate takes fixed steps",
+    )
+    start_time: NonNegative = Field(default=0.0, description="time at which the scenario begins (s)")
+    target_realtime_rate: NonNegative = Field(
+        default=0.0, description="1 runs as fast as the clock; 0 as fast as it can"
+    )
+
+
+class Scenario(Section):
+    """One experiment: the formation, its robots, their couplings and the task."""
+
+    name: str = Field(
+        pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$",
+        description="short name, used for the output folder: letters, digits, and _ . - after the first",
+    )
+    description: str = Field(default="", description="what it shows")
+    formation: Shape = Field(description="shape of the formation: a slot for every robot")
+    robots: Robots
+    springs: Springs = Springs()
+    tracking: Tracking = Tracking()
+    consensus: Consensus = Consensus()
+    avoidance: Avoidance = Avoidance()
+    aggregation: Aggregation = Aggregation()
+    transport: Transport
+    simulator: Simulation = Simulation()

@@ -1,0 +1,212 @@
+"""Scenario files as plain data that remembers its lines.
+
+The parser knows YAML 1.2 only, whatever a file declares: ``yes`` is text and ``1e4`` a number. It builds
+mappings, lists, numbers, booleans, text and null; no other object can come out of a file.
+"""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+from pathlib import Path as FilePath
+from typing import Any
+
+from ruamel.yaml import YAML
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.nodes import MappingNode, Node, ScalarNode
+from ruamel.yaml.resolver import VersionedResolver
+
+from drake_formation.scenario.errors import Fault, Path, ScenarioError, shown
+
+_MOST_VALUES = 300_000
+"""More than any scenario needs; stops aliases that multiply without end."""
+
+_TAG = "tag:yaml.org,2002:"
+
+
+@dataclass(frozen=True)
+class Document:
+    """Data of a scenario, not yet validated, and where each part of it was written.
+
+    Attributes:
+        name: what to call the whole of it, such as the file's path.
+        data: mappings, lists and scalars.
+        origins: where the value at a path was written; a value without one was written where its parent was.
+    """
+
+    name: str
+    data: dict[str, Any]
+    origins: dict[Path, str] = field(default_factory=dict)
+
+    def origin(self, path: Path) -> str:
+        """Where the value at a path, or the nearest thing around it, was written."""
+        prefixes = (path[:length] for length in range(len(path), -1, -1))
+        return next((self.origins[prefix] for prefix in prefixes if prefix in self.origins), self.name)
+
+    def attributed(self, faults: Iterable[Fault]) -> ScenarioError:
+        """An error of the given faults, each with its origin in this document."""
+        return ScenarioError(replace(fault, origin=fault.origin or self.origin(fault.path)) for fault in faults)
+
+
+def read(path: FilePath) -> Document:
+    """Read a scenario file.
+
+    Raises:
+        ScenarioError: the file cannot be read, is not UTF-8 text, or is not one YAML mapping.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise ScenarioError([Fault((), "not UTF-8 text", origin=str(path))]) from error
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        raise ScenarioError([Fault((), f"cannot be read: {reason}", origin=str(path))]) from error
+    return parse(text, str(path))
+
+
+def parse(text: str, name: str) -> Document:
+    """Read a scenario's text.
+
+    Args:
+        text: YAML 1.2.
+        name: what to call it in messages, usually its file.
+
+    Raises:
+        ScenarioError: not one YAML mapping, duplicate keys, keys that are not text, foreign tags.
+    """
+    data, origins = load_yaml(text, lambda line: f"{name}:{line}")
+    if data is None:
+        raise ScenarioError([Fault((), "empty", allowed="a scenario (a YAML mapping)", origin=name)])
+    if not isinstance(data, dict):
+        fault = Fault((), "not a mapping", shown(data), "a scenario (a YAML mapping)", origin=origins[()])
+        raise ScenarioError([fault])
+    return Document(name, data, origins)
+
+
+def load_yaml(text: str, origin: Callable[[int], str]) -> tuple[Any, dict[Path, str]]:
+    """Plain data from YAML 1.2 text.
+
+    Args:
+        text: one YAML document.
+        origin: what to call a line (from 1).
+
+    Returns:
+        The data, and the origin of every value by its path. A value under a key is said to stand at its key.
+
+    Raises:
+        ScenarioError: as for :func:`parse`.
+    """
+    builder = _Builder(origin)
+    try:
+        node = _compose(text)
+        data = None if node is None else builder.build(node, (), _line(node))
+    except MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        message = f"not valid YAML: {', '.join(filter(None, [error.context, error.problem]))}"
+        raise ScenarioError([Fault((), message, origin=origin(mark.line + 1 if mark else 1))]) from error
+    except YAMLError as error:
+        raise ScenarioError([Fault((), f"not valid YAML: {error}", origin=origin(1))]) from error
+    except RecursionError as error:
+        raise ScenarioError([Fault((), "nested too deeply", origin=origin(1))]) from error
+    if builder.faults:
+        raise ScenarioError(builder.faults)
+    return data, builder.origins
+
+
+class _Resolver(VersionedResolver):
+    """YAML 1.2, even under a ``%YAML 1.1`` directive that would turn ``yes`` into a boolean."""
+
+    processing_version = (1, 2)
+
+
+def _compose(text: str) -> Node | None:
+    yaml = YAML(typ="safe", pure=True)
+    yaml.Resolver = _Resolver
+    yaml.composer.warn_double_anchors = False  # reusing an anchor is legal
+    try:
+        node: Node | None = yaml.compose(text)
+    except (ArithmeticError, AssertionError, AttributeError, LookupError, TypeError, ValueError) as error:
+        # The parser lets a few of these slip on malformed escapes and directives.
+        raise YAMLError(str(error)) from error
+    return node
+
+
+def _line(node: Node) -> int:
+    return int(node.start_mark.line) + 1
+
+
+class _Builder:
+    """Nodes to plain data, noting origins and collecting faults on the way."""
+
+    def __init__(self, origin: Callable[[int], str]) -> None:
+        self.origins: dict[Path, str] = {}
+        self.faults: list[Fault] = []
+        self._origin = origin
+        self._open: set[int] = set()
+
+    def build(self, node: Node, path: Path, line: int) -> Any:
+        """Data of a node that stands at a path, on a line."""
+        self.origins[path] = self._origin(line)
+        if len(self.origins) > _MOST_VALUES:
+            raise YAMLError(f"more than {_MOST_VALUES} values")
+        if isinstance(node, ScalarNode):
+            return self._scalar(node, path, line)
+        if id(node) in self._open:
+            return self._fault(path, "an alias that contains itself", line)
+        if node.tag not in (_TAG + "map", _TAG + "seq"):
+            return self._fault(path, f"tag {node.tag} is not allowed", line)
+        self._open.add(id(node))
+        data = self._mapping(node, path) if isinstance(node, MappingNode) else self._list(node, path)
+        self._open.remove(id(node))
+        return data
+
+    def _list(self, node: Node, path: Path) -> list[Any]:
+        return [self.build(item, (*path, index), _line(item)) for index, item in enumerate(node.value)]
+
+    def _mapping(self, node: MappingNode, path: Path) -> dict[str, Any]:
+        data: dict[str, Any] = {}
+        lines: dict[str, int] = {}
+        for key_node, value_node in node.value:
+            line = _line(key_node)
+            key = self._scalar(key_node, path, line) if isinstance(key_node, ScalarNode) else []
+            if not isinstance(key, str):
+                self._fault(path, "a key that is not text", line, shown(key) if key != [] else "")
+            elif key in data:
+                self._fault((*path, key), f"given twice, first on line {lines[key]}", line)
+            else:
+                lines[key] = line
+                data[key] = self.build(value_node, (*path, key), line)
+        return data
+
+    def _scalar(self, node: ScalarNode, path: Path, line: int) -> Any:
+        kind = str(node.tag).removeprefix(_TAG)
+        convert = _SCALARS.get(kind)
+        if convert is None:
+            return self._fault(path, f"tag {node.tag} is not allowed", line)
+        try:
+            return convert(node.value)
+        except (ValueError, KeyError):
+            return self._fault(path, f"not a valid {kind}", line, shown(node.value))
+
+    def _fault(self, path: Path, message: str, line: int, value: str = "") -> None:
+        self.faults.append(Fault(path, message, value, origin=self._origin(line)))
+
+
+def _integer(text: str) -> int:
+    prefixed = text.lstrip("+-")[:2] in ("0x", "0o", "0b")
+    return int(text, 0 if prefixed else 10)
+
+
+def _number(text: str) -> float:
+    return float(text.lower().replace(".inf", "inf").replace(".nan", "nan"))
+
+
+_SCALARS: dict[str, Callable[[str], Any]] = {
+    "null": lambda _: None,
+    "bool": lambda text: {"true": True, "false": False}[text.lower()],
+    "int": _integer,
+    "float": _number,
+    "str": str,
+    # Types beyond YAML 1.2's core: dates, merge keys and default values are text here.
+    "timestamp": str,
+    "merge": str,
+    "value": str,
+}

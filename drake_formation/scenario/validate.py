@@ -1,0 +1,75 @@
+"""From plain data to a sound scenario, or to everything that is wrong with it."""
+
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from drake_formation.scenario.checks import check
+from drake_formation.scenario.errors import Fault, nearest, shown
+from drake_formation.scenario.fields import Place, locate, names
+from drake_formation.scenario.schema import Scenario
+from drake_formation.scenario.source import Document
+
+_MESSAGES = {
+    "missing": "missing",
+    "extra_forbidden": "unknown key",
+    "finite_number": "not finite",
+    "greater_than": "out of range",
+    "greater_than_equal": "out of range",
+    "less_than_equal": "out of range",
+    "literal_error": "unknown name",
+    "string_pattern_mismatch": "not a valid name",
+    "too_long": "too many entries",
+    "too_short": "too few entries",
+}
+
+
+def validate(document: Document) -> Scenario:
+    """A scenario from a document.
+
+    Raises:
+        ScenarioError: with all faults of single fields or, if there are none, all that concern several fields.
+    """
+    try:
+        scenario = Scenario.model_validate(document.data)
+    except ValidationError as error:
+        details = error.errors(include_url=False)
+        raise document.attributed(_fault(detail) for detail in details if not _is_echo(detail)) from error
+    if faults := check(scenario):
+        raise document.attributed(faults)
+    return scenario
+
+
+def _is_echo(detail: ErrorDetails) -> bool:
+    """Whether a list is called too short only because its entries are wrong, which is told already."""
+    return detail["type"] == "too_short" and len(detail["input"]) >= detail["ctx"]["min_length"]
+
+
+def _fault(detail: ErrorDetails) -> Fault:
+    kind, value = detail["type"], detail["input"]
+    if kind == "missing" and isinstance(detail["loc"][-1], int):
+        # A pair with one entry: pydantic misses the second, the user wrote too short a list.
+        return _wrong(locate(detail["loc"][:-1]), value, "too_short")
+    place = locate(detail["loc"])
+    if kind.startswith("union_tag"):
+        return _shape(place, value)
+    if kind == "extra_forbidden":
+        keys = place.section.model_fields
+        return Fault(place.path, _MESSAGES[kind], allowed=", ".join(keys), suggestion=nearest(place.path[-1], keys))
+    if kind == "missing":
+        return Fault(place.path, _MESSAGES[kind], allowed=place.allowed)
+    return _wrong(place, value, kind)
+
+
+def _wrong(place: Place, value: Any, kind: str) -> Fault:
+    message = _MESSAGES.get(kind, "not allowed")
+    return Fault(place.path, message, shown(value), place.allowed, nearest(value, names(place.annotation)))
+
+
+def _shape(place: Place, value: dict[str, Any]) -> Fault:
+    """The shape chooses which other keys a formation has."""
+    path, shapes = (*place.path, "shape"), names(place.annotation)
+    if "shape" not in value:
+        return Fault(path, "missing", allowed=", ".join(shapes))
+    return Fault(path, "unknown name", shown(value["shape"]), ", ".join(shapes), nearest(value["shape"], shapes))

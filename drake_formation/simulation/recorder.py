@@ -1,0 +1,78 @@
+"""What a run leaves behind, sample by sample, at every step the integrator takes."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from pydrake.systems.framework import Context, Diagram, EventStatus
+
+from drake_formation.parameters import robot_name
+
+Array = NDArray[np.float64]
+
+RECORDED = ("state", "tracking_error", "tracking_force", "consensus_force", "avoidance_force")
+"""Output ports of every robot that a run records; the rest follows from them."""
+
+
+class NonFiniteStateError(ArithmeticError):
+    """A robot's state is no longer finite."""
+
+
+class Recorder:
+    """A simulator monitor that keeps the recorded ports of every robot and the phase.
+
+    Args:
+        diagram: a formation diagram.
+        robots: number of robots N.
+        progress: called with the simulated time (s) after every step.
+    """
+
+    def __init__(self, diagram: Diagram, robots: int, progress: Callable[[float], None] | None = None) -> None:
+        self._ports = {
+            name: [diagram.GetOutputPort(f"{robot_name(i)}_{name}") for i in range(robots)] for name in RECORDED
+        }
+        self._phase = diagram.GetOutputPort("phase")
+        self._progress = progress
+        self._times: list[float] = []
+        self._phases: list[float] = []
+        self._samples: dict[str, list[Array]] = {name: [] for name in RECORDED}
+
+    def __call__(self, context: Context) -> EventStatus:
+        """Keep a sample; one at the time of the last sample replaces it (the hand-off changes forces in no time).
+
+        Raises:
+            NonFiniteStateError: a state is infinite or not a number; the sample is not kept.
+        """
+        time = context.get_time()
+        sample = {name: np.array([port.Eval(context) for port in ports]) for name, ports in self._ports.items()}
+        if not np.isfinite(sample["state"]).all():
+            raise NonFiniteStateError
+        if self._times and self._times[-1] == time:
+            self._drop_last()
+        self._times.append(time)
+        self._phases.append(float(self._phase.Eval(context)[0]))
+        for name, value in sample.items():
+            self._samples[name].append(value)
+        if self._progress:
+            self._progress(time)
+        return EventStatus.DidNothing()
+
+    def _drop_last(self) -> None:
+        self._times.pop()
+        self._phases.pop()
+        for series in self._samples.values():
+            series.pop()
+
+    @property
+    def times(self) -> Array:
+        """Sample times (s), shape (samples,)."""
+        return np.array(self._times)
+
+    @property
+    def phases(self) -> Array:
+        """0 during aggregation, 1 during transport; shape (samples,)."""
+        return np.array(self._phases)
+
+    def series(self, port: str) -> Array:
+        """Values of a recorded port, shape (samples, N, size)."""
+        return np.array(self._samples[port])

@@ -1,0 +1,1 @@
+"""Blocks: one LeafSystem a file, in double, AutoDiffXd and Expression."""

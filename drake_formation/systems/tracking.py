@@ -1,0 +1,106 @@
+"""The local controller of one robot: LQR about its reference (paper, Eqs. 9-12)."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from pydrake.systems.controllers import LinearQuadraticRegulator
+from pydrake.systems.framework import BasicVector_, LeafSystem_
+from pydrake.systems.scalar_conversion import TemplateSystem
+
+from drake_formation.systems.scalars import Scalar
+
+Array = NDArray[np.float64]
+
+
+def robot_matrices(mass: float) -> tuple[Array, Array]:
+    """A (4, 4) and B (4, 2) of one robot of a mass (kg) in the plane (paper, Eq. 6)."""
+    a = np.zeros((4, 4))
+    a[:2, 2:] = np.eye(2)
+    b = np.zeros((4, 2))
+    b[2:] = np.eye(2) / mass
+    return a, b
+
+
+def lqr_gain(mass: float, state_cost: ArrayLike, input_cost: ArrayLike) -> Array:
+    """Gain K_l of the local LQR (paper, Eqs. 11-12), from Drake's ``LinearQuadraticRegulator``.
+
+    Args:
+        mass: m_i (kg).
+        state_cost: Q, shape (4, 4), symmetric positive semi-definite with the position weighted.
+        input_cost: R, shape (2, 2), symmetric positive definite.
+
+    Returns:
+        K_l, shape (2, 4), in N/m and N s/m.
+    """
+    gain, _ = LinearQuadraticRegulator(*robot_matrices(mass), np.asarray(state_cost), np.asarray(input_cost))
+    return np.asarray(gain)
+
+
+def tracking_force(error: tuple[Scalar, Scalar, Scalar, Scalar], gain: list[Scalar]) -> tuple[Scalar, Scalar]:
+    """The local control u_l = −K_l ε (paper, Eq. 10).
+
+    The paper's feed-forward −B⁺A x_r is zero for every reference of a point mass, since B⁺A = 0.
+
+    Args:
+        error: tracking error ε = x − x_r (m, m/s).
+        gain: K_l row by row, eight numbers (N/m, N s/m).
+
+    Returns:
+        Components of u_l (N).
+    """
+    ex, ey, evx, evy = error
+    a, b, c, d, e, f, g, h = gain
+    return -(a * ex + b * ey + c * evx + d * evy), -(e * ex + f * ey + g * evx + h * evy)
+
+
+@TemplateSystem.define("TrackingController_")
+def TrackingController_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
+    """The controller as a template over double, AutoDiffXd and Expression; see :class:`TrackingController`."""
+
+    class Impl(LeafSystem_[T]):  # type: ignore[misc]
+        """The local control u_l of one robot (paper, Eqs. 9-10).
+
+        Input ports: ``state`` (size 4) and ``reference``, the state of the formation centre [p; ṗ] (m, m/s, size
+        4), from which the robot's own is x_r = [p + h; ṗ]. Output ports: ``force`` u_l (N, size 2) and ``error``
+        ε = x − x_r (size 4). Parameters: 0, the gain K_l row by row; 1, the slot h (m).
+        """
+
+        def _construct(self, gain: ArrayLike, slot: ArrayLike, *, converter: Any = None) -> None:
+            """Make the controller.
+
+            Args:
+                gain: K_l, shape (2, 4).
+                slot: h_i relative to the formation centre (m), shape (2,).
+                converter: for Drake's scalar conversion.
+            """
+            LeafSystem_[T].__init__(self, converter=converter)
+            self.arguments = (gain, slot)
+            self._state = self.DeclareVectorInputPort("state", 4)
+            self._reference = self.DeclareVectorInputPort("reference", 4)
+            self.DeclareNumericParameter(BasicVector_[T](np.ravel(gain)))
+            self.DeclareNumericParameter(BasicVector_[T](slot))
+            prerequisites = {self.all_input_ports_ticket(), self.all_parameters_ticket()}
+            self.DeclareVectorOutputPort("force", 2, self._calc_force, prerequisites)
+            self.DeclareVectorOutputPort("error", 4, self._calc_error, prerequisites)
+
+        def _construct_copy(self, other: Any, converter: Any = None) -> None:
+            Impl._construct(self, *other.arguments, converter=converter)
+
+        def _error(self, context: Any) -> tuple[Scalar, Scalar, Scalar, Scalar]:
+            x, y, vx, vy = self._state.Eval(context).tolist()
+            rx, ry, rvx, rvy = self._reference.Eval(context).tolist()
+            hx, hy = context.get_numeric_parameter(1).CopyToVector().tolist()
+            return x - rx - hx, y - ry - hy, vx - rvx, vy - rvy
+
+        def _calc_force(self, context: Any, output: Any) -> None:
+            gain = context.get_numeric_parameter(0).CopyToVector().tolist()
+            output.SetFromVector(np.array(tracking_force(self._error(context), gain)))
+
+        def _calc_error(self, context: Any, output: Any) -> None:
+            output.SetFromVector(np.array(self._error(context)))
+
+    return Impl
+
+
+TrackingController = TrackingController_[None]

@@ -1,0 +1,108 @@
+"""What holds for every block: no false feedthrough, and the same numbers for every scalar type."""
+
+import numpy as np
+import pytest
+from pydrake.autodiffutils import AutoDiffXd, ExtractGradient, ExtractValue
+from pydrake.symbolic import Evaluate, Expression, Variable
+
+from drake_formation.references.set_point import SetPoint
+from drake_formation.systems.avoidance import ObstacleAvoidance
+from drake_formation.systems.consensus import ConsensusController
+from drake_formation.systems.consensus_error import ConsensusError
+from drake_formation.systems.hand_off import HandOff
+from drake_formation.systems.plant import RobotPlant
+from drake_formation.systems.sensing import NearestSensing
+from drake_formation.systems.tracking import TrackingController
+
+SPRINGS = [[10.0, 2.0, 0.5, -1.0], [20.0, 3.0, 1.0, 1.0]]
+OBSTACLES = [[0.5, 0.5, 0.0], [-1.0, 0.5, 0.2], [40.0, 0.0, 0.0]]
+
+MAKERS = {
+    "hookean plant": lambda: RobotPlant([2, 3], "hookean", [40.0], SPRINGS, [1.0, 2.0, 3.0, 4.0]),
+    "linear plant": lambda: RobotPlant([2, 3], "linear", [40.0], SPRINGS, [1.0, 2.0, 3.0, 4.0]),
+    "plant without springs": lambda: RobotPlant([], "hookean", [40.0], np.zeros((0, 4)), [1.0, 2.0, 3.0, 4.0]),
+    "tracking": lambda: TrackingController([[1.0, 0.1, 9.0, 0.2], [0.3, 1.0, 0.4, 9.0]], [0.5, -0.5]),
+    "consensus": lambda: ConsensusController([2, 5], [100.0, 7.0], [[1.0, 0.0], [0.0, -1.0]]),
+    "consensus without channels": lambda: ConsensusController([], [100.0, 7.0], np.zeros((0, 2))),
+    "avoidance": lambda: ObstacleAvoidance([2.0, 30.0], OBSTACLES),
+    "masked avoidance": lambda: ObstacleAvoidance([2.0, 30.0], OBSTACLES, masked=True),
+    "avoidance without obstacles": lambda: ObstacleAvoidance([2.0, 30.0], np.zeros((0, 3))),
+    "sensing": lambda: NearestSensing(3, [[1.0, 1.0], [-1.0, 0.5]]),
+    "sensing without obstacles": lambda: NearestSensing(2, np.zeros((0, 2))),
+    "consensus error": lambda: ConsensusError([[0.0, 0.5], [0.5, -0.5], [-0.5, -0.5]]),
+    "set point": lambda: SetPoint([2.5, 3.5], [25.0, 3.5]),
+    "hand-off": lambda: HandOff(3.0),
+}
+
+SILENT = {
+    ("state", "force"), ("state", "phase"), ("state", "spring"), ("spring_force", "force"),
+}  # fmt: skip
+"""Outputs of the plant and the inputs that do not reach them at once. All others do, in every block."""
+
+
+@pytest.fixture(params=MAKERS.values(), ids=MAKERS)
+def block(request):
+    return request.param()
+
+
+def inputs(block):
+    return [block.get_input_port(i) for i in range(block.num_input_ports())]
+
+
+def outputs(block):
+    return [block.get_output_port(i) for i in range(block.num_output_ports())]
+
+
+def test_inputs_reach_exactly_the_outputs_that_depend_on_them(block):
+    for given in inputs(block):
+        for output in outputs(block):
+            names = output.get_name(), given.get_name().split("_")[0]
+            reached = block.HasDirectFeedthrough(given.get_index(), output.get_index())
+            assert reached == (names not in SILENT), names
+
+
+def random_inputs(block):
+    rng = np.random.default_rng(1)
+    return [rng.uniform(0.1, 1, port.size()) for port in inputs(block)]
+
+
+def evaluated(block, values):
+    """All outputs and, of a plant, the derivatives, for given inputs."""
+    context = block.CreateDefaultContext()
+    for port, value in zip(inputs(block), values, strict=True):
+        port.FixValue(context, value)
+    results = [port.Eval(context) for port in outputs(block)]
+    if context.num_continuous_states():
+        results.append(block.EvalTimeDerivatives(context).CopyToVector())
+    return np.concatenate([np.ravel(result) for result in results])
+
+
+def test_automatic_differentiation_gives_the_same_numbers(block):
+    values = random_inputs(block)
+    differentiated = evaluated(block.ToAutoDiffXd(), [[AutoDiffXd(x) for x in value] for value in values])
+    np.testing.assert_array_equal(ExtractValue(differentiated).ravel(), evaluated(block, values))
+
+
+def test_symbols_give_the_same_numbers(block):
+    values = random_inputs(block)
+    symbols = [[Variable(f"u{i}_{k}") for k in range(len(value))] for i, value in enumerate(values)]
+    expressions = evaluated(block.ToSymbolic(), [[Expression(x) for x in symbol] for symbol in symbols])
+    numbers = dict(zip(sum(symbols, []), np.concatenate([[], *values]), strict=True))
+    traced = Evaluate(np.array(expressions, dtype=object).reshape(-1, 1), numbers).ravel() if expressions.size else []
+    np.testing.assert_allclose(traced, evaluated(block, values), rtol=1e-12, atol=1e-12)
+
+
+def test_gradients_are_the_slopes(block):
+    values = random_inputs(block)
+    flat, step = np.concatenate([[], *values]), 1e-6
+    splits = np.cumsum([len(value) for value in values])[:-1]
+
+    def at(point):
+        return evaluated(block, np.split(point, splits) if values else [])
+
+    slopes = np.array([(at(flat + row) - at(flat - row)) / (2 * step) for row in step * np.eye(len(flat))])
+    variables = np.array([AutoDiffXd(x, row) for x, row in zip(flat, np.eye(len(flat)), strict=True)], dtype=object)
+    outcome = evaluated(block.ToAutoDiffXd(), np.split(variables, splits) if values else [])
+    gradient = ExtractGradient(outcome.reshape(-1, 1)) if len(flat) else np.zeros((len(outcome), 0))
+    gradient = gradient if gradient.size else np.zeros((len(outcome), len(flat)))
+    np.testing.assert_allclose(gradient, slopes.T.reshape(gradient.shape), rtol=1e-6, atol=1e-5)

@@ -32,7 +32,7 @@ types: $(VENV)/installed-dev
 	$(BIN)/mypy
 
 diagrams: $(VENV)/installed
-	for name in line quadrilateral octagon; do \
+	for name in line quadrilateral octagon s_curve; do \
 		$(BIN)/drake-formation graphviz $$name -o diagrams/$$name.svg || exit; \
 	done
 	$(BIN)/drake-formation run line --out out/line

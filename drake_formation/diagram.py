@@ -7,6 +7,7 @@ from pydrake.systems.primitives import Adder, ConstantVectorSource
 from drake_formation.formation import graphs
 from drake_formation.parameters import Parameters, block_parameters, robot_name
 from drake_formation.references.set_point import SetPoint
+from drake_formation.references.trajectory import TrajectoryReference
 from drake_formation.scenario import Scenario, derive, require_sound
 from drake_formation.systems.avoidance import ObstacleAvoidance
 from drake_formation.systems.consensus import ConsensusController
@@ -50,8 +51,9 @@ def build_diagram(scenario: Scenario) -> Diagram:
     parameters = block_parameters(scenario)
     builder = DiagramBuilder()
     phase = builder.AddNamedSystem("phase", _phase(scenario))
-    reference = builder.AddNamedSystem("reference", SetPoint(*parameters["reference"]))
-    builder.Connect(phase.get_output_port(), reference.get_input_port())
+    reference = builder.AddNamedSystem("reference", _reference(scenario, parameters))
+    if reference.num_input_ports():
+        builder.Connect(phase.get_output_port(), reference.GetInputPort("phase"))
     robots = [
         builder.AddNamedSystem(robot_name(i), build_robot(scenario, parameters, i))
         for i in range(derive.robot_count(scenario.formation))
@@ -124,6 +126,13 @@ def _phase(scenario: Scenario) -> System:
     if scenario.aggregation.duration == 0:
         return ConstantVectorSource([1.0])
     return HandOff(derive.hand_off_time(scenario))
+
+
+def _reference(scenario: Scenario, parameters: Parameters) -> System:
+    """A set point, which switches with the phase, or a trajectory, which starts by the clock at the hand-off."""
+    if scenario.transport.reference.kind == "set_point":
+        return SetPoint(*parameters["reference"])
+    return TrajectoryReference(*parameters["reference"])
 
 
 def _couple(builder: DiagramBuilder, robots: list[Diagram], scenario: Scenario) -> None:

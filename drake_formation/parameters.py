@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from pydrake.systems.framework import Context, Diagram
 
 from drake_formation.formation import graphs
-from drake_formation.scenario import Scenario, derive, require_sound
+from drake_formation.references.trajectory import trajectory_tables
+from drake_formation.scenario import Scenario, derive, reference, require_sound
 from drake_formation.systems.tracking import lqr_gain
 
 Array = NDArray[np.float64]
@@ -35,7 +36,7 @@ def block_parameters(scenario: Scenario) -> Parameters:
     gains = np.array([scenario.consensus.delta, scenario.consensus.delta_v])
     field = np.array([scenario.avoidance.range, scenario.avoidance.gain])
     result: Parameters = {
-        "reference": (derive.aggregation_centre(scenario), np.array(scenario.transport.goal)),
+        "reference": reference_parameters(scenario),
         "consensus_error": (slots,),
     }
     if scenario.avoidance.sensing == "nearest":
@@ -43,7 +44,8 @@ def block_parameters(scenario: Scenario) -> Parameters:
     for i, mass in enumerate(derive.masses(scenario)):
         robot = robot_name(i)
         result[f"{robot}/plant"] = (np.array([mass]), springs[i])
-        result[f"{robot}/tracking"] = (tracking_gain(scenario, float(mass)), slots[i])
+        inertia = mass if scenario.tracking.feed_forward else 0.0
+        result[f"{robot}/tracking"] = (tracking_gain(scenario, float(mass)), slots[i], np.array([inertia]))
         result[f"{robot}/consensus"] = (gains, displacements(slots, talks, i))
         result[f"{robot}/avoidance"] = (field, obstacles)
     return result
@@ -63,13 +65,15 @@ def set_parameters(diagram: Diagram, context: Context, scenario: Scenario) -> No
     Raises:
         ScenarioError: the scenario is wrong.
         ValueError: its structure differs from the diagram's (robots, graphs, spring law, sensing, number of
-            obstacles); that needs a new diagram. Nothing has been written then.
+            obstacles, pieces of the reference, time of the hand-off); that needs a new diagram. Nothing has been
+            written then.
     """
     require_sound(scenario)
     if structure(scenario) != diagram_structure(diagram):
         raise ValueError(
             f"scenario {scenario.name!r} has another structure than the diagram {diagram.get_name()!r}: robots, "
-            "graphs, spring law, sensing and number of obstacles must be alike, or the diagram built anew"
+            "graphs, spring law, sensing, number of obstacles, pieces of the reference and time of the hand-off must "
+            "be alike, or the diagram built anew"
         )
     for path, values in block_parameters(scenario).items():
         block_context = find_block(diagram, path).GetMyMutableContextFromRoot(context)
@@ -86,9 +90,9 @@ def find_block(diagram: Diagram, path: str) -> Any:
 
 
 def structure(scenario: Scenario) -> dict[str, Any]:
-    """What a diagram of this scenario is made of: each block with its parameter sizes, neighbours and law."""
+    """What a diagram of this scenario is made of: the hand-off, each block's parameter sizes, neighbours and law."""
     springs, talks = derive.spring_graph(scenario), derive.communication_graph(scenario)
-    result: dict[str, Any] = {}
+    result: dict[str, Any] = {"phase": derive.hand_off_time(scenario) if scenario.aggregation.duration else None}
     for path, values in block_parameters(scenario).items():
         result[path] = [np.size(value) for value in values]
     for i in range(derive.robot_count(scenario.formation)):
@@ -104,8 +108,7 @@ def diagram_structure(diagram: Diagram) -> dict[str, Any]:
     for path, block in _blocks(diagram):
         context = block.CreateDefaultContext()
         sizes = [context.get_numeric_parameter(k).size() for k in range(context.num_numeric_parameter_groups())]
-        if path != "phase":
-            result[path] = sizes
+        result[path] = getattr(block, "time", None) if path == "phase" else sizes
     for robot in diagram.GetSystems():
         if isinstance(robot, Diagram):
             names = [robot.get_input_port(k).get_name() for k in range(robot.num_input_ports())]
@@ -122,6 +125,14 @@ def _blocks(diagram: Diagram) -> Iterator[tuple[str, Any]]:
         for block in system.GetSystems():
             if block.get_name() != "control":
                 yield f"{system.get_name()}/{block.get_name()}", block
+
+
+def reference_parameters(scenario: Scenario) -> tuple[Array, Array]:
+    """The reference's numbers: centre and goal of a set point (m), or the beginnings and coefficients of the pieces."""
+    trajectory = reference.trajectory(scenario)
+    if trajectory is None:
+        return derive.aggregation_centre(scenario), np.array(scenario.transport.goal)
+    return trajectory_tables(trajectory, derive.hand_off_time(scenario))
 
 
 def tracking_gain(scenario: Scenario, mass: float) -> Array:

@@ -18,6 +18,9 @@ generators = st.integers(0, 2**32 - 1).map(np.random.default_rng)
 metres = st.floats(-5, 5, allow_subnormal=False)
 speeds = st.floats(-2, 2, allow_subnormal=False)
 gains = st.floats(0, 1e4, allow_subnormal=False)
+up_to_three = st.integers(0, 3)
+up_to_five = st.integers(1, 5)
+either_law = st.sampled_from(["hookean", "linear"])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,9 +46,7 @@ def graphs(draw, robots, connected=False):
 
 
 @st.composite
-def structures(
-    draw, robots=st.integers(1, 5), law=st.sampled_from(["hookean", "linear"]), obstacles=st.integers(0, 3)
-):
+def structures(draw, robots=up_to_five, law=either_law, obstacles=up_to_three):
     """A random structure over random graphs; the graph of channels is connected, as consensus needs."""
     count = draw(robots)
     return Structure(

@@ -12,7 +12,7 @@ from strategies import generators, metres, random_state, scenarios
 from drake_formation.diagram import ROBOT_OUTPUTS, build_diagram
 from drake_formation.formation import graphs
 from drake_formation.parameters import tracking_gain
-from drake_formation.scenario import Scenario, ScenarioError, derive, load_scenario, with_overrides
+from drake_formation.scenario import ScenarioError, derive, load_scenario, with_overrides
 from drake_formation.systems.avoidance import avoidance_force
 from drake_formation.systems.tracking import robot_matrices
 
@@ -77,7 +77,7 @@ def energy(scenario, state):
 @given(scenarios(), generators, metres, metres)
 def test_forces_do_not_depend_on_where_the_world_frame_stands(scenario, rng, x, y):
     state, shift = random_state(scenario, rng), np.array([x, y])
-    moved = forces(transformed(scenario, lambda points: points + shift), state + [x, y, 0, 0])
+    moved = forces(transformed(scenario, lambda points: points + shift), np.add(state, [x, y, 0, 0]))
     for name, force in forces(scenario, state).items():
         np.testing.assert_allclose(moved[name], force, rtol=1e-7, atol=1e-7, err_msg=name)
 

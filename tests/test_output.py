@@ -28,9 +28,8 @@ def test_a_failure_while_writing_leaves_everything_as_it_was(tmp_path):
     place = tmp_path / "run"
     with _moved_into_place(place) as partial:
         (partial / SCENARIO).write_text("old")
-    with pytest.raises(RuntimeError), _moved_into_place(place) as partial:
-        (partial / SCENARIO).write_text("new")
-        raise RuntimeError
+    with pytest.raises(FileNotFoundError), _moved_into_place(place) as partial:
+        (partial / "missing" / SCENARIO).write_text("new")
     assert (place / SCENARIO).read_text() == "old"
     assert list(tmp_path.iterdir()) == [place]
 

@@ -15,8 +15,8 @@ def SetPoint_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
     class Impl(LeafSystem_[T]):  # type: ignore[misc]
         """A time-invariant reference per phase, as Theorem 1 of the paper assumes.
 
-        Input port: ``phase`` (0 aggregation, 1 transport). Output port: ``centre``, the state of the formation
-        centre [p; ṗ] (m, m/s, size 4). Parameters: 0, the aggregation centre (m); 1, the goal (m).
+        Input port: ``phase`` (0 aggregation, 1 transport). Output port: ``centre``, the motion of the formation
+        centre [p; ṗ; p̈] (m, m/s, m/s², size 6), at rest. Parameters: 0, the aggregation centre (m); 1, the goal (m).
         """
 
         def _construct(self, centre: ArrayLike, goal: ArrayLike, *, converter: Any = None) -> None:
@@ -34,7 +34,7 @@ def SetPoint_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             self.DeclareNumericParameter(BasicVector_[T](centre))
             self.DeclareNumericParameter(BasicVector_[T](goal))
             self.DeclareVectorOutputPort(
-                "centre", 4, self._calc_centre, {self.all_input_ports_ticket(), self.all_parameters_ticket()}
+                "centre", 6, self._calc_centre, {self.all_input_ports_ticket(), self.all_parameters_ticket()}
             )
 
         def _construct_copy(self, other: Any, converter: Any = None) -> None:
@@ -45,7 +45,7 @@ def SetPoint_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             cx, cy = context.get_numeric_parameter(0).CopyToVector().tolist()
             gx, gy = context.get_numeric_parameter(1).CopyToVector().tolist()
             zero = self._zero
-            output.SetFromVector(np.array([cx + phase * (gx - cx), cy + phase * (gy - cy), zero, zero]))
+            output.SetFromVector(np.array([cx + phase * (gx - cx), cy + phase * (gy - cy), zero, zero, zero, zero]))
 
     return Impl
 

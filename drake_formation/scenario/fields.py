@@ -78,14 +78,24 @@ def phrase(annotation: Any) -> str:
 
 
 def names(annotation: Any) -> list[str]:
-    """Names among which a value may choose: literals, or the shapes of a union of sections."""
+    """Names among which a value may choose: literals, or the shapes or kinds of a union of sections."""
     bare, _ = _unwrapped(annotation)
     if get_origin(bare) is Literal:
         return [str(name) for name in get_args(bare)]
     if _is_section(bare):
-        return names(bare.model_fields["shape"].annotation) if "shape" in bare.model_fields else []
+        keys = [key for key in CHOOSERS if key in bare.model_fields]
+        return [name for key in keys for name in names(bare.model_fields[key].annotation)]
     return [name for branch in get_args(bare) for name in names(branch)] if _is_union(bare) else []
 
+
+def chooser(annotation: Any) -> str:
+    """The key that chooses between the sections of a union."""
+    bare, _ = _unwrapped(annotation)
+    return next(key for key in CHOOSERS for branch in get_args(bare) if key in branch.model_fields)
+
+
+CHOOSERS = ("shape", "kind")
+"""Keys by which a section says which of several it is."""
 
 _NAMES: dict[Any, str] = {
     bool: "true or false",

@@ -21,6 +21,9 @@ Length = Annotated[float, Field(gt=0, le=1e6)]
 Point = Annotated[tuple[Coordinate, Coordinate], Field(strict=False)]
 """Two coordinates in the world frame (m)."""
 
+Gap = Annotated[float, Field(ge=1e-3, le=1e6)]
+"""A distance to keep (m). A planner takes steps in proportion to it, so it is no shorter than a millimetre."""
+
 NonNegative = Annotated[float, Field(ge=0)]
 Positive = Annotated[float, Field(gt=0)]
 
@@ -31,6 +34,10 @@ def _scalar_or_list(value: Any) -> str:
 
 def _named_or_edges(value: Any) -> str:
     return "edges" if isinstance(value, list | tuple) else "named"
+
+
+def _all_or_listed(value: Any) -> str:
+    return "listed" if isinstance(value, list | tuple) else "all"
 
 
 def _start_kind(value: Any) -> str:
@@ -67,6 +74,12 @@ Graph = Annotated[
     | Annotated[tuple[Edge, ...], Field(strict=False), Tag("edges")],
     Discriminator(_named_or_edges),
 ]
+
+Known = Annotated[
+    Annotated[Literal["all"], Tag("all")] | Annotated[tuple[int, ...], Field(strict=False), Tag("listed")],
+    Discriminator(_all_or_listed),
+]
+"""All obstacles, or some of them, numbered from 1."""
 
 Row = Annotated[tuple[float, ...], Field(strict=False)]
 CostMatrix = Annotated[
@@ -192,6 +205,9 @@ class Tracking(Section):
     R: CostMatrix = Field(
         default=1.0, description="input cost, 2 x 2: a number times I, a diagonal or a matrix; published: I"
     )
+    feed_forward: bool = Field(
+        default=False, description="add m_i a_r, the force that the reference's acceleration takes; published: none"
+    )
 
 
 class Consensus(Section):
@@ -229,11 +245,74 @@ class Aggregation(Section):
     )
 
 
+class SetPointReference(Section):
+    """The goal itself, from the hand-off on; what the published numbers come from."""
+
+    kind: Literal["set_point"] = Field(description="kind of reference")
+
+
+MotionDuration = Annotated[
+    Positive | None,
+    Field(
+        description="how long the motion takes from the hand-off (s), the goal held afterwards; chosen: the "
+        "transport's duration if not given"
+    ),
+]
+
+
+class MinimumJerkReference(Section):
+    """A straight line to the goal with the least jerk."""
+
+    kind: Literal["minimum_jerk"] = Field(description="kind of reference")
+    duration: MotionDuration = None
+
+
+class WaypointsReference(Section):
+    """A smooth curve through points, such as the paper's s-curve (Fig. 19)."""
+
+    kind: Literal["waypoints"] = Field(description="kind of reference")
+    points: tuple[Point, ...] = Field(
+        strict=False,
+        min_length=1,
+        description="where the formation centre passes between where it gathers and the goal (m)",
+    )
+    duration: MotionDuration = None
+
+
+class PotentialFieldReference(Section):
+    """A way around known obstacles, planned by an artificial potential field before the run."""
+
+    kind: Literal["potential_field"] = Field(description="kind of reference")
+    known: Known = Field(
+        default="all", description="which obstacles the plan knows, numbered from 1; robots sense all, known or not"
+    )
+    clearance: Gap = Field(
+        default=1.3,
+        description="what the plan keeps between formation and known obstacles (m), at least three quarters of it "
+        "where smoothing cuts corners; chosen: 1.3, the sensing range, so that who follows the plan feels none",
+    )
+    reach: Gap = Field(
+        default=2.6, description="clearance below which the plan gives way (m), more than clearance; chosen: 2.6"
+    )
+    duration: MotionDuration = None
+
+
+Reference = Annotated[
+    SetPointReference | MinimumJerkReference | WaypointsReference | PotentialFieldReference,
+    Field(discriminator="kind"),
+]
+"""Where the formation centre should be during transport."""
+
+
 class Transport(Section):
     """The phase in which the object is carried to the goal."""
 
     goal: Point = Field(description="where the formation centre is carried to (m)")
     duration: Positive = Field(default=60.0, description="how long (s); chosen: 60")
+    reference: Reference = Field(
+        default=SetPointReference(kind="set_point"),
+        description="where the formation centre should be on the way; inferred: a set point",
+    )
 
 
 class Simulation(Section):

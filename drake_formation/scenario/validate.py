@@ -7,7 +7,7 @@ from pydantic_core import ErrorDetails
 
 from drake_formation.scenario.checks import check
 from drake_formation.scenario.errors import Fault, nearest, shown
-from drake_formation.scenario.fields import Place, locate, names
+from drake_formation.scenario.fields import Place, chooser, locate, names
 from drake_formation.scenario.schema import Scenario
 from drake_formation.scenario.source import Document
 
@@ -53,7 +53,7 @@ def _fault(detail: ErrorDetails) -> Fault:
         return _wrong(locate(detail["loc"][:-1]), value, "too_short")
     place = locate(detail["loc"])
     if kind.startswith("union_tag"):
-        return _shape(place, value)
+        return _choice(place, value)
     if kind == "extra_forbidden":
         keys = place.section.model_fields
         return Fault(place.path, _MESSAGES[kind], allowed=", ".join(keys), suggestion=nearest(place.path[-1], keys))
@@ -67,9 +67,10 @@ def _wrong(place: Place, value: Any, kind: str) -> Fault:
     return Fault(place.path, message, shown(value), place.allowed, nearest(value, names(place.annotation)))
 
 
-def _shape(place: Place, value: dict[str, Any]) -> Fault:
-    """The shape chooses which other keys a formation has."""
-    path, shapes = (*place.path, "shape"), names(place.annotation)
-    if "shape" not in value:
-        return Fault(path, "missing", allowed=", ".join(shapes))
-    return Fault(path, "unknown name", shown(value["shape"]), ", ".join(shapes), nearest(value["shape"], shapes))
+def _choice(place: Place, value: dict[str, Any]) -> Fault:
+    """A formation's shape, or a reference's kind, chooses which other keys it has."""
+    key, choices = chooser(place.annotation), names(place.annotation)
+    path, allowed = (*place.path, key), ", ".join(choices)
+    if key not in value:
+        return Fault(path, "missing", allowed=allowed)
+    return Fault(path, "unknown name", shown(value[key]), allowed, nearest(value[key], choices))

@@ -28,6 +28,7 @@ def HandOff_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             """
             LeafSystem_[T].__init__(self, converter=converter)
             self.arguments = (time,)
+            self.time = time
             phase = self.DeclareDiscreteState(BasicVector_[T]([0.0]))
             self.DeclarePeriodicDiscreteUpdateEvent(NEVER_AGAIN, time, self._place_object)
             self.DeclareStateOutputPort("phase", phase)

@@ -1,5 +1,7 @@
 """Arithmetic that floats, arrays, AutoDiffXd and Expression do not share."""
 
+from bisect import bisect_right
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -26,3 +28,21 @@ def at_most(x: Scalar, bound: Scalar) -> Scalar:
     if isinstance(x, Expression) or isinstance(bound, Expression):
         return symbolic.if_then_else(x <= bound, Expression(1.0), Expression(0.0))
     return 1.0 if x <= bound else 0.0
+
+
+def row_at(x: Scalar, bounds: list[Scalar], rows: list[list[Scalar]]) -> list[Scalar]:
+    """The row of the last bound that x has reached, or the first row before all bounds, of any scalar.
+
+    Args:
+        x: where.
+        bounds: ascending.
+        rows: one for each bound, of equal lengths.
+    """
+    if not isinstance(x, Expression):
+        return rows[max(bisect_right(bounds, x) - 1, 0)]
+    # One decision a bound, not one a number; 1 times the row and 0 times all others is the row to the last digit.
+    reached = [1.0, *(at_most(bound, x) for bound in bounds[1:]), 0.0]
+    chosen = [here - beyond for here, beyond in pairwise(reached)]
+    return [
+        sum(weight * value for weight, value in zip(chosen, column, strict=True)) for column in zip(*rows, strict=True)
+    ]

@@ -45,7 +45,6 @@ def NearestSensing_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             """
             LeafSystem_[T].__init__(self, converter=converter)
             self.arguments = (robots, obstacles)
-            self._one = T(1.0)
             self._states = [self.DeclareVectorInputPort(f"state_{i + 1}", 4) for i in range(robots)]
             self.DeclareNumericParameter(BasicVector_[T](np.ravel(obstacles)))
             prerequisites = {self.all_input_ports_ticket(), self.all_parameters_ticket()}
@@ -63,7 +62,7 @@ def NearestSensing_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
                 sensed = []
                 for ox, oy in obstacles:
                     squared = [(x - ox) * (x - ox) + (y - oy) * (y - oy) for x, y in positions]
-                    sensed.append(self._one * nearest(squared, robot))
+                    sensed.append(nearest(squared, robot))
                 output.SetFromVector(np.array(sensed))
 
             return calc

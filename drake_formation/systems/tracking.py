@@ -54,32 +54,53 @@ def tracking_force(error: tuple[Scalar, Scalar, Scalar, Scalar], gain: list[Scal
     return -(a * ex + b * ey + c * evx + d * evy), -(e * ex + f * ey + g * evx + h * evy)
 
 
+def feed_forward_force(inertia: Scalar, ax: Scalar, ay: Scalar) -> tuple[Scalar, Scalar]:
+    """The force m a_r that the reference's own motion takes; the paper's law has none.
+
+    With it, m ε̈ = −K_l ε for a single robot: on its reference it stays there, however that accelerates.
+
+    Args:
+        inertia: the mass m_i (kg), or 0 for no feed-forward.
+        ax: acceleration a_r of the reference (m/s²), x component.
+        ay: its y component (m/s²).
+
+    Returns:
+        Components of the force (N).
+    """
+    return inertia * ax, inertia * ay
+
+
 @TemplateSystem.define("TrackingController_")
 def TrackingController_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
     """The controller as a template over double, AutoDiffXd and Expression; see :class:`TrackingController`."""
 
     class Impl(LeafSystem_[T]):  # type: ignore[misc]
-        """The local control u_l of one robot (paper, Eqs. 9-10).
+        """The local control u_l of one robot (paper, Eqs. 9-10), and optionally what its reference's motion takes.
 
-        Input ports: ``state`` (size 4) and ``reference``, the state of the formation centre [p; ṗ] (m, m/s, size
-        4), from which the robot's own is x_r = [p + h; ṗ]. Output ports: ``force`` u_l (N, size 2) and ``error``
-        ε = x − x_r (size 4). Parameters: 0, the gain K_l row by row; 1, the slot h (m).
+        Input ports: ``state`` (size 4) and ``reference``, the motion of the formation centre [p; ṗ; p̈] (m, m/s,
+        m/s², size 6), from which the robot's own is x_r = [p + h; ṗ]. Output ports: ``force`` u_l + m p̈ (N, size 2)
+        and ``error`` ε = x − x_r (size 4). Parameters: 0, the gain K_l row by row; 1, the slot h (m); 2, the mass in
+        the feed-forward (kg), 0 for none.
         """
 
-        def _construct(self, gain: ArrayLike, slot: ArrayLike, *, converter: Any = None) -> None:
+        def _construct(
+            self, gain: ArrayLike, slot: ArrayLike, inertia: ArrayLike = (0.0,), *, converter: Any = None
+        ) -> None:
             """Make the controller.
 
             Args:
                 gain: K_l, shape (2, 4).
                 slot: h_i relative to the formation centre (m), shape (2,).
+                inertia: the mass in the feed-forward (kg), 0 for none as in the paper; shape (1,).
                 converter: for Drake's scalar conversion.
             """
             LeafSystem_[T].__init__(self, converter=converter)
-            self.arguments = (gain, slot)
+            self.arguments = (gain, slot, inertia)
             self._state = self.DeclareVectorInputPort("state", 4)
-            self._reference = self.DeclareVectorInputPort("reference", 4)
+            self._reference = self.DeclareVectorInputPort("reference", 6)
             self.DeclareNumericParameter(BasicVector_[T](np.ravel(gain)))
             self.DeclareNumericParameter(BasicVector_[T](slot))
+            self.DeclareNumericParameter(BasicVector_[T](inertia))
             prerequisites = {self.all_input_ports_ticket(), self.all_parameters_ticket()}
             self.DeclareVectorOutputPort("force", 2, self._calc_force, prerequisites)
             self.DeclareVectorOutputPort("error", 4, self._calc_error, prerequisites)
@@ -89,13 +110,16 @@ def TrackingController_(T: Any) -> Any:  # noqa: N802 - Drake's name for a templ
 
         def _error(self, context: Any) -> tuple[Scalar, Scalar, Scalar, Scalar]:
             x, y, vx, vy = self._state.Eval(context).tolist()
-            rx, ry, rvx, rvy = self._reference.Eval(context).tolist()
+            rx, ry, rvx, rvy, _, _ = self._reference.Eval(context).tolist()
             hx, hy = context.get_numeric_parameter(1).CopyToVector().tolist()
             return x - rx - hx, y - ry - hy, vx - rvx, vy - rvy
 
         def _calc_force(self, context: Any, output: Any) -> None:
             gain = context.get_numeric_parameter(0).CopyToVector().tolist()
-            output.SetFromVector(np.array(tracking_force(self._error(context), gain)))
+            (inertia,) = context.get_numeric_parameter(2).CopyToVector().tolist()
+            fx, fy = tracking_force(self._error(context), gain)
+            ahead_x, ahead_y = feed_forward_force(inertia, *self._reference.Eval(context).tolist()[4:])
+            output.SetFromVector(np.array([fx + ahead_x, fy + ahead_y]))
 
         def _calc_error(self, context: Any, output: Any) -> None:
             output.SetFromVector(np.array(self._error(context)))

@@ -56,13 +56,30 @@ obstacles = st.lists(
     st.fixed_dictionaries({"position": points}, optional={"radius": st.floats(0, 1e6)}),
     max_size=3,
 )
+references = st.one_of(
+    st.fixed_dictionaries({"kind": st.just("set_point")}),
+    st.fixed_dictionaries({"kind": st.just("minimum_jerk")}, optional={"duration": positive}),
+    st.fixed_dictionaries(
+        {"kind": st.just("waypoints"), "points": st.lists(points, min_size=1, max_size=4)},
+        optional={"duration": positive},
+    ),
+    st.fixed_dictionaries(
+        {"kind": st.just("potential_field")},
+        optional={
+            "known": st.just("all") | st.lists(st.integers(0, 4), max_size=3),
+            "clearance": st.floats(1e-3, 1e6),
+            "reach": st.floats(1e-3, 1e6),
+            "duration": positive,
+        },
+    ),
+)
 
 scenarios = st.fixed_dictionaries(
     {
         "name": st.from_regex(r"[A-Za-z0-9][A-Za-z0-9_.-]*", fullmatch=True),
         "formation": shapes,
         "robots": st.fixed_dictionaries({"start": starts}, optional={"mass": each(positive)}),
-        "transport": st.fixed_dictionaries({"goal": points}, optional={"duration": positive}),
+        "transport": st.fixed_dictionaries({"goal": points}, optional={"duration": positive, "reference": references}),
     },
     optional={
         "description": st.text(),
@@ -72,7 +89,7 @@ scenarios = st.fixed_dictionaries(
             stiffness=each(non_negative),
             damping=each(non_negative),
         ),
-        "tracking": section(Q=costs, R=costs),
+        "tracking": section(Q=costs, R=costs, feed_forward=st.booleans()),
         "consensus": section(graph=graphs, delta=non_negative, delta_v=non_negative),
         "avoidance": section(
             obstacles=obstacles, range=lengths, gain=non_negative, sensing=st.sampled_from(["in_range", "nearest"])

@@ -1,7 +1,17 @@
 import pytest
 
-from drake_formation.scenario.fields import locate, names, phrase
-from drake_formation.scenario.schema import CostMatrix, Graph, Line, Positive, RandomStart, Scenario, Slots
+from drake_formation.scenario.fields import chooser, locate, names, phrase
+from drake_formation.scenario.schema import (
+    CostMatrix,
+    Graph,
+    Line,
+    Positive,
+    RandomStart,
+    Reference,
+    Scenario,
+    Shape,
+    Slots,
+)
 
 
 @pytest.mark.parametrize(
@@ -15,6 +25,8 @@ from drake_formation.scenario.schema import CostMatrix, Graph, Line, Positive, R
         (("tracking", "Q", "matrix", 1, 2), ("tracking", "Q", 1, 2)),
         (("consensus", "graph", "named"), ("consensus", "graph")),
         (("springs", "graph", "edges", 0, 1), ("springs", "graph", 0, 1)),
+        (("transport", "reference", "waypoints", "points", 1, 0), ("transport", "reference", "points", 1, 0)),
+        (("transport", "reference", "potential_field", "known", "listed", 1), ("transport", "reference", "known", 1)),
     ],
 )
 def test_branches_of_unions_are_not_part_of_the_path(loc, path):
@@ -50,3 +62,8 @@ def test_names_are_those_a_value_may_choose_from():
     assert names(Graph) == ["complete", "cycle", "path", "star"]
     assert names(Scenario.model_fields["formation"].annotation) == ["line", "polygon", "grid", "slots"]
     assert names(Positive) == []
+    assert names(Reference) == ["set_point", "minimum_jerk", "waypoints", "potential_field"]
+
+
+def test_a_key_chooses_between_sections():
+    assert (chooser(Shape), chooser(Reference)) == ("shape", "kind")

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from strategies import gains, metres, random_state, scenarios, speeds, generators
+from strategies import gains, generators, metres, random_state, scenarios, speeds
 
 from drake_formation.formation import graphs
 from drake_formation.scenario import derive

@@ -22,7 +22,7 @@ def test_robots_in_formation_have_no_error_wherever_they_are(robots, rng):
 
 def test_two_robots_share_their_disagreement():
     slots = np.array([[0.0, -0.5], [0.0, 0.5]])
-    positions = slots + [[0.0, 0.0], [0.2, 0.0]]
+    positions = np.add(slots, [[0.0, 0.0], [0.2, 0.0]])
     np.testing.assert_allclose(consensus_errors(positions, slots), [[-0.1, 0], [0.1, 0]], atol=1e-15)
 
 

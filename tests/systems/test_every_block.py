@@ -1,5 +1,7 @@
 """What holds for every block: no false feedthrough, and the same numbers for every scalar type."""
 
+from itertools import chain
+
 import numpy as np
 import pytest
 from pydrake.autodiffutils import AutoDiffXd, ExtractGradient, ExtractValue
@@ -68,13 +70,31 @@ def random_inputs(block):
 
 def evaluated(block, values):
     """All outputs and, of a plant, the derivatives, for given inputs."""
+    return all_outputs(block, context_with(block, values))
+
+
+def context_with(block, values):
     context = block.CreateDefaultContext()
     for port, value in zip(inputs(block), values, strict=True):
         port.FixValue(context, value)
+    return context
+
+
+def all_outputs(block, context):
     results = [port.Eval(context) for port in outputs(block)]
     if context.num_continuous_states():
         results.append(block.EvalTimeDerivatives(context).CopyToVector())
     return np.concatenate([np.ravel(result) for result in results])
+
+
+def test_changed_parameters_are_felt_at_once(block):
+    context, fresh = (context_with(block, random_inputs(block)) for _ in range(2))
+    for group in range(context.num_numeric_parameter_groups()):
+        all_outputs(block, context)
+        for changed in (context, fresh):
+            parameter = changed.get_mutable_numeric_parameter(group)
+            parameter.SetFromVector(0.1 - 1.5 * parameter.CopyToVector())
+        np.testing.assert_array_equal(all_outputs(block, context), all_outputs(block, fresh.Clone()))
 
 
 def test_automatic_differentiation_gives_the_same_numbers(block):
@@ -87,7 +107,7 @@ def test_symbols_give_the_same_numbers(block):
     values = random_inputs(block)
     symbols = [[Variable(f"u{i}_{k}") for k in range(len(value))] for i, value in enumerate(values)]
     expressions = evaluated(block.ToSymbolic(), [[Expression(x) for x in symbol] for symbol in symbols])
-    numbers = dict(zip(sum(symbols, []), np.concatenate([[], *values]), strict=True))
+    numbers = dict(zip(chain(*symbols), np.concatenate([[], *values]), strict=True))
     traced = Evaluate(np.array(expressions, dtype=object).reshape(-1, 1), numbers).ravel() if expressions.size else []
     np.testing.assert_allclose(traced, evaluated(block, values), rtol=1e-12, atol=1e-12)
 

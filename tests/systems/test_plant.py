@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
 from strategies import gains, metres, speeds
 
@@ -68,6 +68,15 @@ def test_damping_takes_energy_away(law, x, c, h):
     _, _, dvx, dvy = x
     fx, fy = law(*x, 0.0, c, *h)
     assert fx * dvx + fy * dvy >= 0
+
+
+@given(relative, gains, displacements)
+def test_a_hookean_damper_resists_the_rate_of_the_length(x, c, h):
+    dx, dy, dvx, dvy = x
+    length, step = np.hypot(dx, dy), 1e-6
+    rate = (np.hypot(dx + step * dvx, dy + step * dvy) - np.hypot(dx - step * dvx, dy - step * dvy)) / (2 * step)
+    expected = c * rate * np.array([dx, dy]) / length
+    assert hookean_spring_force(*x, 0.0, c, *h) == pytest.approx(expected, rel=1e-6, abs=1e-8 * c + 1e-9)
 
 
 @given(relative, st.floats(1, 1e4), displacements)

@@ -1,6 +1,6 @@
 """What must hold between several fields of a scenario, checked before Drake sees it."""
 
-from drake_formation.scenario.checks import geometry, graphs, simulator, tracking
+from drake_formation.scenario.checks import geometry, graphs, reference, simulator, tracking
 from drake_formation.scenario.errors import Fault
 from drake_formation.scenario.schema import Scenario
 
@@ -13,8 +13,10 @@ def check(scenario: Scenario) -> list[Fault]:
     """
     if faults := list(geometry.size(scenario)):
         return faults  # without a number of robots nothing else can be said
+    places = list(geometry.check(scenario))
     return [
-        *geometry.check(scenario),
+        *places,
+        *([] if places else reference.check(scenario)),  # a curve needs sound places to begin and end at
         *graphs.check(scenario),
         *tracking.check(scenario),
         *simulator.check(scenario),

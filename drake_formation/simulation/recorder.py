@@ -1,6 +1,7 @@
 """What a run leaves behind, sample by sample, at every step the integrator takes."""
 
 from collections.abc import Callable
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,21 @@ RECORDED = ("state", "tracking_error", "tracking_force", "consensus_force", "avo
 
 class NonFiniteStateError(ArithmeticError):
     """A robot's state is no longer finite."""
+
+
+class Recording(Protocol):
+    """What was recorded, by whichever engine."""
+
+    @property
+    def times(self) -> Array:
+        """Sample times (s), shape (samples,)."""
+
+    @property
+    def phases(self) -> Array:
+        """0 during aggregation, 1 during transport; shape (samples,)."""
+
+    def series(self, port: str) -> Array:
+        """Values of one of the ports ``RECORDED``, shape (samples, N, size)."""
 
 
 class Recorder:
@@ -75,4 +91,5 @@ class Recorder:
 
     def series(self, port: str) -> Array:
         """Values of a recorded port, shape (samples, N, size)."""
-        return np.array(self._samples[port])
+        ports = self._ports[port]
+        return np.reshape(self._samples[port], (len(self._times), len(ports), ports[0].size()))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from drake_formation.formation import graphs
 from drake_formation.parameters import obstacle_table
 from drake_formation.scenario import Scenario, derive, to_yaml
-from drake_formation.simulation.recorder import Recorder
+from drake_formation.simulation.recorder import Recording
 from drake_formation.systems.consensus_error import consensus_errors
 
 Array = NDArray[np.float64]
@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 VECTOR = ("time", "robot", "axis")
 
 
-def labelled_result(scenario: Scenario, run: Recorder, nominal: Recorder | None) -> xr.Dataset:
+def labelled_result(scenario: Scenario, run: Recording, nominal: Recording | None) -> xr.Dataset:
     """Label what was recorded.
 
     Args:
@@ -92,7 +92,7 @@ def _variable(dimensions: tuple[str, ...], values: Array, units: str, name: str)
     return xr.Variable(dimensions, values, {"units": units, "long_name": name})
 
 
-def _deviation(run: Recorder, nominal: Recorder | None, hand_off: float) -> Array:
+def _deviation(run: Recording, nominal: Recording | None, hand_off: float) -> Array:
     """Position relative to the obstacle-free response at the run's own times (m), NaN where there is none."""
     from scipy.interpolate import CubicHermiteSpline  # slow to import, and not needed to build a diagram
 

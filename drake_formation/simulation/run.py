@@ -1,16 +1,15 @@
-"""Run a scenario on Drake's Simulator: aggregation, hand-off, transport, and the obstacle-free response."""
+"""Run a scenario: aggregation, hand-off, transport, and the obstacle-free response."""
 
 from collections.abc import Callable
 
 import numpy as np
 import xarray as xr
-from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
-from pydrake.systems.framework import Context, Diagram
 
 from drake_formation.diagram import build_diagram
 from drake_formation.parameters import set_parameters
 from drake_formation.scenario import Scenario, derive
-from drake_formation.simulation.recorder import NonFiniteStateError, Recorder
+from drake_formation.simulation.engines import ENGINES, Engine
+from drake_formation.simulation.recorder import NonFiniteStateError
 from drake_formation.simulation.result import labelled_result
 
 Progress = Callable[[float], None]
@@ -33,7 +32,7 @@ class SimulationError(RuntimeError):
         self.partial = partial
 
 
-def simulate(scenario: Scenario, *, progress: Progress | None = None) -> xr.Dataset:
+def simulate(scenario: Scenario, *, engine: str = "blocks", progress: Progress | None = None) -> xr.Dataset:
     """Run a scenario from its initial state to its end.
 
     Where there are obstacles, the transport is run once more from the hand-off without them: the deviation from that
@@ -41,47 +40,44 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None) -> xr.Data
 
     Args:
         scenario: what to run.
+        engine: ``blocks``, the diagram on Drake's Simulator; or ``compiled``, code derived from the same diagram, for
+            ``runge_kutta5`` only.
         progress: called as the simulated time goes on.
 
     Returns:
         The labelled result; see :func:`drake_formation.simulation.result.labelled_result`.
 
     Raises:
-        ScenarioError: the scenario is wrong.
+        ScenarioError: the scenario is wrong, or asks for an integrator that the compiled engine does not have.
+        LoweringError: a block of the diagram cannot be compiled.
         SimulationError: the run diverged or the integrator gave up; it carries what was recorded.
     """
     diagram = build_diagram(scenario)
-    robots = derive.robot_count(scenario.formation)
+    start = ENGINES[engine](scenario, diagram)
     begin, hand_off, end = scenario.simulator.start_time, derive.hand_off_time(scenario), derive.end_time(scenario)
 
-    run = Recorder(diagram, robots, progress and (lambda time: progress(time - begin)))
-    simulator = _simulator(scenario, diagram, diagram.CreateDefaultContext(), run)
+    run = start(diagram.CreateDefaultContext(), progress and (lambda time: progress(time - begin)))
     try:
-        simulator.Initialize()
-        simulator.AdvanceTo(hand_off)
+        run.advance(hand_off)
         # Carry out the hand-off now, so that the first sample of the transport has its forces.
-        simulator.AdvancePendingEvents()
-        run(simulator.get_context())
-        at_hand_off = simulator.get_context().Clone()
-        simulator.AdvanceTo(end)
+        run.carry_out_updates()
+        at_hand_off = run.context.Clone()
+        run.advance(end)
     except _FAILURES as failure:
-        raise _simulation_error(
-            scenario, simulator, run, labelled_result(scenario, run, nominal=None), failure
-        ) from failure
+        partial = labelled_result(scenario, run.recording, nominal=None)
+        raise _simulation_error(scenario, run, partial, failure) from failure
     if not felt_obstacles(scenario):
-        return labelled_result(scenario, run, nominal=run)
-    _require_clear(labelled_result(scenario, run, nominal=None))
+        return labelled_result(scenario, run.recording, nominal=run.recording)
+    _require_clear(labelled_result(scenario, run.recording, nominal=None))
 
-    nominal = Recorder(diagram, robots, progress and (lambda time: progress(end - begin + time - hand_off)))
     set_parameters(diagram, at_hand_off, without_obstacles(scenario))
-    simulator = _simulator(scenario, diagram, at_hand_off, nominal)
+    nominal = start(at_hand_off, progress and (lambda time: progress(end - begin + time - hand_off)))
     try:
-        simulator.Initialize()
-        simulator.AdvanceTo(end)
+        nominal.advance(end)
     except _FAILURES as failure:
-        partial = labelled_result(scenario, run, nominal)
-        raise _simulation_error(scenario, simulator, nominal, partial, failure) from failure
-    return labelled_result(scenario, run, nominal)
+        partial = labelled_result(scenario, run.recording, nominal.recording)
+        raise _simulation_error(scenario, nominal, partial, failure) from failure
+    return labelled_result(scenario, run.recording, nominal.recording)
 
 
 def simulated_duration(scenario: Scenario) -> float:
@@ -98,16 +94,6 @@ def felt_obstacles(scenario: Scenario) -> bool:
 def without_obstacles(scenario: Scenario) -> Scenario:
     """The scenario in which no obstacle exerts a force; its structure is the same."""
     return scenario.model_copy(update={"avoidance": scenario.avoidance.model_copy(update={"gain": 0.0})})
-
-
-def _simulator(scenario: Scenario, diagram: Diagram, context: Context, recorder: Recorder) -> Simulator:
-    simulator = Simulator(diagram, context)
-    config = SimulatorConfig(**scenario.simulator.model_dump())
-    # Drake's start_time overwrites the Context's, which may already be at the hand-off.
-    config.start_time = context.get_time() or config.start_time
-    ApplySimulatorConfig(config, simulator)
-    simulator.set_monitor(recorder)
-    return simulator
 
 
 def _require_clear(result: xr.Dataset) -> None:
@@ -131,25 +117,23 @@ def _require_clear(result: xr.Dataset) -> None:
 _FAILURES = (RuntimeError, ArithmeticError, SystemExit)
 
 
-def _simulation_error(
-    scenario: Scenario, simulator: Simulator, recorder: Recorder, partial: xr.Dataset, failure: BaseException
-) -> SimulationError:
+def _simulation_error(scenario: Scenario, run: Engine, partial: xr.Dataset, failure: BaseException) -> SimulationError:
     """Say when, which robot, why and what to try."""
-    time = recorder.times[-1] if len(recorder.times) else simulator.get_context().get_time()
-    robot = _culprit(simulator)
+    time = run.recording.times[-1] if len(run.recording.times) else run.context.get_time()
+    robot = _culprit(run)
     reasons: dict[type[BaseException], str] = {
         NonFiniteStateError: "its state is no longer finite",
         ZeroDivisionError: "it met another robot or the middle of an obstacle",
         OverflowError: "its forces grew beyond all bounds",
     }
     reason = reasons.get(type(failure), f"the integrator gave up ({failure})")
-    message = f"the run stopped at t = {time:.6g} s at robot {robot}: {reason}. Try {_advice(scenario, simulator)}."
+    message = f"the run stopped at t = {time:.6g} s at robot {robot}: {reason}. Try {_advice(scenario, run)}."
     return SimulationError(message, float(time), robot, partial)
 
 
-def _advice(scenario: Scenario, simulator: Simulator) -> str:
-    settings, integrator = scenario.simulator, simulator.get_integrator()
-    if integrator.get_fixed_step_mode():
+def _advice(scenario: Scenario, run: Engine) -> str:
+    settings = scenario.simulator
+    if run.fixed_step:
         return (
             f"a smaller simulator.max_step_size (now {settings.max_step_size:g} s), or error control: "
             "simulator.integration_scheme=runge_kutta5 with simulator.use_error_control=true"
@@ -160,9 +144,10 @@ def _advice(scenario: Scenario, simulator: Simulator) -> str:
     )
 
 
-def _culprit(simulator: Simulator) -> int:
-    """The first robot whose state is not finite, else the fastest one; from 1."""
-    state = simulator.get_context().get_continuous_state_vector().CopyToVector().reshape(-1, 4)
+def _culprit(run: Engine) -> int:
+    """Of the robots whose state is not finite, or else of all, the one that was fastest at last; from 1."""
+    state = run.context.get_continuous_state_vector().CopyToVector().reshape(-1, 4)
     lost = ~np.isfinite(state).all(axis=1)
-    suspicion = lost if lost.any() else np.linalg.norm(state[:, 2:], axis=1)
-    return int(np.argmax(suspicion)) + 1
+    last = run.recording.series("state")[-1] if len(run.recording.times) else np.zeros_like(state)
+    speed = np.abs(last[:, 2:]).max(axis=1)
+    return int(np.argmax(np.where(lost | ~lost.any(), speed, -1.0))) + 1

@@ -30,9 +30,9 @@ def paths(result: xr.Dataset) -> Figure:
         axes.plot(x[~carried], y[~carried], color=colour, linewidth=0.9, linestyle=":")
         axes.plot(x[:1], y[:1], "s", color=colour, markersize=4.5)
         axes.plot(x[carried], y[carried], color=colour, linewidth=1.4, label=f"robot {robot}")
-    _draw_obstacles(axes, result)
+    draw_obstacles(axes, result)
     for time in snapshot_times(result):
-        _draw_formation(axes, result.sel(time=time))
+        draw_formation(axes, result.sel(time=time))
     axes.set(xlabel="x (m)", ylabel="y (m)", title=_title(result, "paths"))
     axes.grid(alpha=0.3)
     axes.margins(0.02, 0.05)
@@ -189,7 +189,8 @@ def _fit_to_plane(figure: Figure, axes: Axes) -> None:
     figure.set_size_inches(width, min(max(height, 3.0), width))
 
 
-def _draw_obstacles(axes: Axes, result: xr.Dataset) -> None:
+def draw_obstacles(axes: Axes, result: xr.Dataset) -> None:
+    """Draw a result's obstacles and their sensing range in the plane."""
     reach = float(result.attrs["sensing_range_m"])
     for k, obstacle in enumerate(result["obstacle"].values):
         x, y = result["obstacle_position"].sel(obstacle=obstacle).values
@@ -201,7 +202,8 @@ def _draw_obstacles(axes: Axes, result: xr.Dataset) -> None:
         axes.add_patch(sensed)
 
 
-def _draw_formation(axes: Axes, moment: xr.Dataset) -> None:
+def draw_formation(axes: Axes, moment: xr.Dataset) -> None:
+    """Draw robots and springs in the plane at one time of a result."""
     for spring in moment["spring"].values:
         ends = [int(robot) for robot in str(spring).split("-")]
         x, y = moment["position"].sel(robot=ends).values.T

@@ -1,0 +1,241 @@
+"""A diagram as compiled code: its time derivatives, its outputs, its trajectories."""
+
+import functools
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydrake.systems.framework import Context, Diagram
+
+from drake_formation.lowering import cache
+from drake_formation.lowering.errors import LoweringError
+from drake_formation.lowering.events import Updates
+from drake_formation.lowering.schedule import Layout, Table
+from drake_formation.lowering.source import derivatives_source, outputs_source
+from drake_formation.lowering.wiring import Port, Wiring
+
+Array = NDArray[np.float64]
+
+CHUNK = 4096
+"""Samples after which the compiled integrator reports."""
+EVERY_STEP = np.zeros(0)
+
+
+class Status(IntEnum):
+    """Why an integration returned; the numbers of :mod:`drake_formation.lowering.dormand_prince`."""
+
+    DONE = 0
+    FULL = 1
+    NOT_FINITE = 2
+    STEP_TOO_SMALL = 3
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """Samples of the continuous state between two times.
+
+    Attributes:
+        times: sample times (s), shape (samples,).
+        states: shape (samples, states).
+        values: from :meth:`CompiledDiagram.read`, as they were meanwhile.
+        status: ``DONE``, or why it ends early; where ``NOT_FINITE``, the Context holds the state that is not.
+        evaluations: derivatives evaluated.
+        rejected: steps rejected.
+    """
+
+    times: Array
+    states: Array
+    values: Array
+    status: Status
+    evaluations: int
+    rejected: int
+
+
+class CompiledDiagram:
+    """What :func:`lower` makes of a diagram.
+
+    Numbers that change from run to run (numeric parameters, discrete state, fixed inputs) are not part of the code but
+    of ``values``, an array that :meth:`read` takes from a Context; it is scratch memory too, one thread's own.
+    """
+
+    def __init__(self, diagram: Diagram) -> None:
+        wiring = Wiring(diagram)
+        self.diagram = diagram
+        self.updates = Updates(diagram, wiring)
+        self._wiring = wiring
+        self._layout = Layout(wiring, _state_addresses(diagram, wiring))
+        program = self._layout.derivatives()
+        self._table = program.table
+        self._derivatives: Callable[..., None] = cache.load(derivatives_source(program)).derivatives
+        self._groups_of: dict[Any, list[tuple[str, int, int]]] = {block: [] for block in wiring.blocks.values()}
+        for (block, space, group), address in self._layout.groups.items():
+            if space != "state":
+                self._groups_of[block].append((space, group, address))
+        self._outputs: dict[tuple[str, ...], tuple[Callable[..., None], Table, Table]] = {}
+
+    def read(self, context: Context) -> Array:
+        """Values of a Context of the diagram: its parameters, discrete state and inputs.
+
+        Raises:
+            ValueError: an input that is needed has no value.
+        """
+        values = np.zeros(self._layout.size)
+        for block, path in ((block, path) for path, block in self._wiring.blocks.items()):
+            own = block.GetMyContextFromRoot(context)
+            for space, group, address in self._groups_of[block]:
+                if space == "parameter":
+                    found = own.get_numeric_parameter(group).CopyToVector()
+                elif space == "discrete":
+                    found = own.get_discrete_state().get_vector(group).CopyToVector()
+                elif block.get_input_port(group).HasValue(own):
+                    found = block.get_input_port(group).Eval(own)
+                elif (block, group) in self._layout.used_inputs:
+                    raise ValueError(f"input {block.get_input_port(group).get_name()!r} of block {path!r} has no value")
+                else:
+                    continue
+                values[address : address + len(found)] = found
+        return values
+
+    def derivatives(self, time: float, state: Array, values: Array) -> Array:
+        """Time derivatives of the continuous state.
+
+        Args:
+            time: time (s).
+            state: continuous state in Drake's order, shape (states,).
+            values: from :meth:`read`.
+        """
+        result = np.empty(len(state))
+        self._derivatives(float(time), np.ascontiguousarray(state, dtype=float), values, self._table, result)
+        return result
+
+    def outputs(self, names: Sequence[str], times: Array, states: Array, values: Array) -> dict[str, Array]:
+        """Output ports of the diagram along a trajectory, each of shape (samples, size).
+
+        Args:
+            names: names of vector-valued output ports.
+            times: times (s), shape (samples,).
+            states: continuous state at those times, shape (samples, states).
+            values: from :meth:`read`.
+
+        Raises:
+            LoweringError: a port depends on a block that cannot be compiled.
+        """
+        code, table, addresses = self._compiled_outputs(tuple(names))
+        memory = np.zeros(self._layout.size)
+        memory[: len(values)] = values
+        result = np.empty((len(times), len(addresses)))
+        code(np.ascontiguousarray(times), np.ascontiguousarray(states), memory, table, addresses, result)
+        sizes = [self.diagram.GetOutputPort(name).size() for name in names]
+        parts = np.split(result, np.cumsum(sizes)[:-1], axis=1)
+        return dict(zip(names, parts, strict=True))
+
+    def integrate(
+        self,
+        context: Context,
+        end: float,
+        *,
+        accuracy: float = 1e-6,
+        max_step: float = 0.1,
+        adaptive: bool = True,
+        at: Array = EVERY_STEP,
+        updated: bool = False,
+    ) -> Iterator[Trajectory]:
+        """Integrate from a Context's time and state, which go along, to the end or to what stops it.
+
+        Drake carries out the diagram's updates at their times, those at the start included, those at the end not.
+
+        Args:
+            context: a Context of the diagram.
+            end: when to stop (s).
+            accuracy: largest error of any state in one step.
+            max_step: largest step (s).
+            adaptive: control the step; else every step is the largest.
+            at: times to sample at (s), rising; where empty every accepted step is a sample.
+            updated: whether the updates due at the start have been carried out.
+
+        Yields:
+            The trajectory in pieces, the last of which is ``DONE`` or says why there are no more.
+        """
+        integrate = _integrator()
+        state = context.get_continuous_state_vector().CopyToVector()
+        while (begin := context.get_time()) < end:
+            if not updated:
+                self.updates.carry_out(context)
+            updated = False
+            values = self.read(context)
+            stop = self.updates.after(begin, end)
+            wanted = at[(at >= begin) & ((at < stop) | (stop == end))] if len(at) else at
+            if len(at) and not len(wanted):
+                wanted = np.array([np.inf])
+            clock = np.array([begin, 0.1 * max_step, 1e-4])  # Drake starts with a tenth of the largest step too
+            status = Status.FULL
+            while status == Status.FULL:
+                samples = len(wanted) or CHUNK
+                times, states = np.empty(samples), np.empty((samples, len(state)))
+                code, count, evaluations, rejected = integrate(
+                    self._derivatives, clock, stop, state, values, self._table, accuracy, max_step, adaptive, wanted,
+                    times, states,
+                )  # fmt: skip
+                status = Status(code)
+                context.SetTimeAndContinuousState(clock[0], state)
+                reported = Status.FULL if status == Status.DONE and stop < end else status
+                yield Trajectory(times[:count], states[:count], values, reported, evaluations, rejected)
+            if status != Status.DONE:
+                return
+
+    def _compiled_outputs(self, names: tuple[str, ...]) -> tuple[Callable[..., None], Table, Table]:
+        if names not in self._outputs:
+            ports = [self.diagram.GetOutputPort(name) for name in names]
+            sources: list[Port] = [self._wiring.leaf(self.diagram, int(port.get_index())) for port in ports]
+            program = self._layout.outputs(sources)
+            addresses = [
+                address + k
+                for source, port in zip(sources, ports, strict=True)
+                for address in [self._layout.address(*source)]
+                for k in range(port.size())
+            ]
+            code = cache.load(outputs_source(program)).outputs
+            self._outputs[names] = code, program.table, np.array(addresses, dtype=np.uint32)
+        return self._outputs[names]
+
+
+def lower(diagram: Diagram) -> CompiledDiagram:
+    """Compile a diagram.
+
+    Its blocks are traced with Drake's symbolic scalar, so they must convert to it; each kind of block becomes one
+    compiled function that runs over all its blocks. The code is kept on disk:
+    see :mod:`drake_formation.lowering.cache`.
+
+    Args:
+        diagram: any Drake diagram of continuous blocks and of blocks with one periodic discrete update.
+
+    Raises:
+        LoweringError: a block cannot be compiled; it is named.
+    """
+    return CompiledDiagram(diagram)
+
+
+@functools.cache
+def _integrator() -> Callable[..., tuple[int, int, int, int]]:
+    """The compiled integrator, which is the same for all diagrams."""
+    source = Path(__file__).with_name("dormand_prince.py").read_text(encoding="utf-8")
+    integrate: Callable[..., tuple[int, int, int, int]] = cache.load(source).integrate
+    return integrate
+
+
+def _state_addresses(diagram: Diagram, wiring: Wiring) -> dict[Any, int]:
+    """Where each block's continuous state begins in the diagram's."""
+    context = diagram.CreateDefaultContext()
+    context.SetContinuousState(np.arange(float(context.num_continuous_states())))
+    addresses = {}
+    for path, block in wiring.blocks.items():
+        own = block.GetMyContextFromRoot(context).get_continuous_state_vector().CopyToVector()
+        if len(own):
+            if not np.array_equal(own, own[0] + np.arange(len(own))):
+                raise LoweringError(path, "its state is not in one piece in the diagram's")
+            addresses[block] = int(own[0])
+    return addresses

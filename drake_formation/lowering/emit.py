@@ -1,0 +1,205 @@
+"""Traced expressions as the source of a compiled function over all blocks of a kind."""
+
+from dataclasses import dataclass, field
+
+from drake_formation.lowering.expressions import RELATIONS, Graph, Leaf, Node, Walk
+from drake_formation.lowering.loops import LoopFinder
+
+HEAD = "def {name}(t, m, table, step, out):"
+"""A kernel reads the time, the memory and its rows of the table, and writes to the memory or the derivatives."""
+
+CALLS = {
+    "Abs": "abs",
+    "Sqrt": "math.sqrt",
+    "Exp": "math.exp",
+    "Log": "math.log",
+    "Sin": "math.sin",
+    "Cos": "math.cos",
+    "Tan": "math.tan",
+    "Asin": "math.asin",
+    "Acos": "math.acos",
+    "Atan": "math.atan",
+    "Sinh": "math.sinh",
+    "Cosh": "math.cosh",
+    "Tanh": "math.tanh",
+    "Ceil": "np.ceil",
+    "Floor": "np.floor",
+    "Atan2": "math.atan2",
+    "Min": "min",
+    "Max": "max",
+}
+INFIX = {
+    **{"Mul": " * ", "Div": " / ", "Pow": " ** ", "And": " and ", "Or": " or "},
+    **{name: f" {relation} " for name, relation in RELATIONS.items()},
+}
+PREFIX = {"Neg": "-", "Not": "not "}
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """The source of a function that computes some expressions for every block of a kind.
+
+    Attributes:
+        body: the source without its head, the same for kinds that differ in the number of like ports alone.
+        groups: which memory each row points to, in order: (space, group); inputs, one a port, follow these.
+        turns: lengths of the loops, which stand in the row after the groups.
+        inputs: number of input ports in the row.
+    """
+
+    body: str
+    groups: tuple[tuple[str, int], ...]
+    turns: tuple[int, ...]
+    inputs: int
+
+
+def emit(graph: Graph, roots: list[int], inputs: int) -> Kernel:
+    """Write the kernel of some nodes; a row of its table is [output, groups …, loop lengths …, inputs …].
+
+    Args:
+        graph: the nodes.
+        roots: what to compute, one number after the other.
+        inputs: how many input ports the block has.
+    """
+    finder = LoopFinder(graph)
+    return _Writer(graph, [finder.rewrite(root) for root in roots], finder.turns, inputs).kernel()
+
+
+@dataclass
+class _Scope:
+    """Lines of the function or of one loop, and the names of the nodes computed there."""
+
+    indent: str
+    lines: list[str] = field(default_factory=list)
+    names: dict[int, str] = field(default_factory=dict)
+
+
+class _Writer:
+    def __init__(self, graph: Graph, roots: list[int], turns: list[int], inputs: int) -> None:
+        self._graph, self._roots, self._turns, self._inputs = graph, roots, turns, inputs
+        self._order = self._reachable()
+        leaves = [
+            content for n in self._order if (content := graph.nodes[n].content) and not isinstance(content, float)
+        ]
+        spaces = {(leaf.space, leaf.group) for leaf in leaves if leaf.space not in ("input", "time")}
+        self._groups = tuple(sorted(spaces))
+        self._outer = _Scope("        ")
+
+    def kernel(self) -> Kernel:
+        """The whole."""
+        columns = [f"g{k}" for k in range(len(self._groups))] + [f"n{k}" for k in range(len(self._turns))]
+        prologue = [
+            "    for block in range(table[step + 1]):",
+            "        row = table[table[step] + block]",
+            "        o = table[row]",
+            *(f"        {name} = table[row + {1 + k}]" for k, name in enumerate(columns)),
+        ]
+        results = [self._value(root, self._outer) for root in self._roots]
+        stores = [f"        out[o + {k}] = {value}" for k, value in enumerate(results)]
+        body = "\n".join([*prologue, *self._outer.lines, *stores])
+        return Kernel(body, self._groups, tuple(self._turns), self._inputs)
+
+    def _reachable(self) -> list[int]:
+        """Numbers of all nodes that are needed, arguments first."""
+        order: dict[int, None] = {}
+
+        def visit(number: int) -> None:
+            if number not in order:
+                for argument in self._graph.nodes[number].arguments:
+                    visit(argument)
+                order[number] = None
+
+        for root in self._roots:
+            visit(root)
+        self._walks: set[int] = set()
+        self._depth: dict[int, int] = {}
+        for number in order:
+            node = self._graph.nodes[number]
+            if isinstance(node.content, Walk) or (
+                node.operation != "Sum" and any(argument in self._walks for argument in node.arguments)
+            ):
+                self._walks.add(number)
+            below = max((self._depth[argument] for argument in node.arguments), default=0)
+            self._depth[number] = below + (node.operation == "Sum")
+        return list(order)
+
+    def _value(self, number: int, scope: _Scope) -> str:
+        """Name or text of a node's value, computed where it belongs: outside the loop unless it moves with it."""
+        if number not in self._walks:
+            scope = self._outer
+        node = self._graph.nodes[number]
+        if node.operation == "constant" and isinstance(node.content, float):
+            return repr(node.content) if node.content >= 0 else f"({node.content!r})"
+        if number not in scope.names:
+            if node.operation == "Sum":
+                self._loop(node.content, self._depth[number])
+            else:
+                text = self._text(node, scope)
+                name = f"{'w' if number in self._walks else 'v'}{len(scope.names)}"
+                scope.lines.append(f"{scope.indent}{name} = {text}")
+                scope.names[number] = name
+        return scope.names[number]
+
+    def _loop(self, loop: Leaf | Walk | float | None, depth: int) -> None:
+        """All sums of one length that can be computed together, in one loop."""
+        sums = [
+            number
+            for number in self._order
+            if (node := self._graph.nodes[number]).operation == "Sum"
+            and node.content == loop
+            and self._depth[number] == depth
+        ]
+        assert isinstance(loop, float)
+        inner = _Scope("            ")
+        terms = [self._value(self._graph.nodes[number].arguments[0], inner) for number in sums]
+        for number in sums:
+            self._outer.names[number] = f"s{len(self._outer.names)}"
+        names = [self._outer.names[number] for number in sums]
+        self._outer.lines += [f"        {name} = 0.0" for name in names]
+        self._outer.lines.append(f"        for k in range(n{int(loop)}):")
+        self._outer.lines += inner.lines
+        self._outer.lines += [f"            {name} += {term}" for name, term in zip(names, terms, strict=True)]
+
+    def _text(self, node: Node, scope: _Scope) -> str:
+        if isinstance(node.content, Leaf | Walk):
+            return self._address(node.content)
+        operation = node.operation
+        if operation == "Add":
+            return self._sum(node, scope)
+        values = [self._value(argument, scope) for argument in node.arguments]
+        if operation in INFIX:
+            return INFIX[operation].join(values)
+        if operation in PREFIX:
+            return f"{PREFIX[operation]}{values[0]}"
+        if operation == "IfThenElse":
+            return f"{values[1]} if {values[0]} else {values[2]}"
+        return str(bool(node.content)) if operation == "truth" else f"{CALLS[operation]}({', '.join(values)})"
+
+    def _sum(self, node: Node, scope: _Scope) -> str:
+        text = ""
+        for argument in node.arguments:
+            term = self._graph.nodes[argument]
+            if term.operation == "Neg":
+                text += (
+                    f" - {self._value(term.arguments[0], scope)}"
+                    if text
+                    else f"-{self._value(term.arguments[0], scope)}"
+                )
+            else:
+                text += f" + {self._value(argument, scope)}" if text else self._value(argument, scope)
+        return text
+
+    def _address(self, leaf: Leaf | Walk) -> str:
+        if leaf.space == "time":
+            return "t"
+        index = _moved(leaf.offset, leaf.offset_step) if isinstance(leaf, Walk) else str(leaf.offset)
+        if leaf.space != "input":
+            return f"m[g{self._groups.index((leaf.space, leaf.group))} + {index}]"
+        port = _moved(leaf.group, leaf.group_step) if isinstance(leaf, Walk) else str(leaf.group)
+        first = 1 + len(self._groups) + len(self._turns)
+        return f"m[table[row + {first} + {port}] + {index}]"
+
+
+def _moved(start: int, step: int) -> str:
+    if step == 0:
+        return str(start)
+    return f"{start} + {step} * k" if step > 0 else f"{start} - {-step} * k"

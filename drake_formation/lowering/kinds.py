@@ -1,0 +1,81 @@
+"""Blocks that compute the same are one kind: each kind is read and written as code once."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from drake_formation.lowering.emit import Kernel, emit
+from drake_formation.lowering.errors import LoweringError
+from drake_formation.lowering.expressions import Graph, Leaf, UnsupportedOperationError
+from drake_formation.lowering.trace import TracedBlock
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A function that some blocks have in common, as expressions of the numbers they read.
+
+    Attributes:
+        graph: the expressions' nodes.
+        roots: the nodes of its values.
+        inputs: number of input ports of such a block.
+    """
+
+    graph: Graph
+    roots: list[int]
+    inputs: int
+
+    @cached_property
+    def leaves(self) -> set[Leaf]:
+        """Every number it reads."""
+        numbers = {number for root in self.roots for number in self.graph.leaves(root)}
+        return {content for number in numbers if isinstance(content := self.graph.nodes[number].content, Leaf)}
+
+    @cached_property
+    def ports(self) -> list[int]:
+        """The input ports it depends on."""
+        return sorted({leaf.group for leaf in self.leaves if leaf.space == "input"})
+
+    @cached_property
+    def copied(self) -> Leaf | None:
+        """The first of the numbers in a row that it merely passes on, or None where it computes."""
+        contents = [self.graph.nodes[root].content for root in self.roots]
+        if not contents or not isinstance(contents[0], Leaf) or contents[0].space == "time":
+            return None
+        first = contents[0]
+        in_a_row = [Leaf(first.space, first.group, first.offset + k) for k in range(len(contents))]
+        return first if contents == in_a_row else None
+
+    @cached_property
+    def kernel(self) -> Kernel:
+        """Its source."""
+        return emit(self.graph, self.roots, self.inputs)
+
+
+class KindTable:
+    """The kinds found so far.
+
+    Every block is traced: what one block computes may depend on attributes that Drake does not know. Comparing its
+    expressions with a kind's is quick; reading them is done once a kind.
+    """
+
+    def __init__(self) -> None:
+        self._known: dict[Any, list[tuple[list[Any], Kind]]] = {}
+
+    def find(self, block: TracedBlock, function: int) -> Kind:
+        """The kind of a block's output port or time derivatives.
+
+        Raises:
+            LoweringError: the block cannot be traced, or does what cannot be compiled.
+        """
+        expressions = block.trace(function)
+        family = self._known.setdefault((type(block.block), block.sizes, function), [])
+        for known, kind in family:
+            if all(a.EqualTo(b) for a, b in zip(known, expressions, strict=True)):
+                return kind
+        graph = Graph(block.symbols.leaf_of)
+        try:
+            kind = Kind(graph, [graph.read(expression) for expression in expressions], len(block.sizes[0]))
+        except (UnsupportedOperationError, KeyError) as error:
+            raise LoweringError(block.path, f"it uses {error}, which has no compiled counterpart") from error
+        family.append((expressions, kind))
+        return kind

@@ -1,0 +1,171 @@
+"""Where every number lives in memory, and in which order the kernels run over it."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drake_formation.lowering.errors import LoweringError
+from drake_formation.lowering.expressions import Leaf
+from drake_formation.lowering.kinds import Kind, KindTable
+from drake_formation.lowering.trace import DERIVATIVES, SymbolTable, TracedBlock
+from drake_formation.lowering.wiring import Port, Wiring
+
+Table = NDArray[np.uint32]
+
+
+@dataclass(frozen=True)
+class Job:
+    """A kind to be computed for one block once everything it reads is there, which is so at its level."""
+
+    block: Any
+    kind: Kind
+    level: int
+    address: int
+
+
+@dataclass(frozen=True)
+class Program:
+    """Kernels in the order in which they run, and the table of addresses that they read.
+
+    Attributes:
+        outputs: source of the kernels that write outputs into the memory.
+        derivatives: source of the kernels that write time derivatives; they run last.
+        table: for each kernel the address of its list of rows and their number; then the lists; then the rows.
+    """
+
+    outputs: list[str]
+    derivatives: list[str]
+    table: Table
+
+
+class Layout:
+    """The memory of a diagram: one array that holds everything a block reads.
+
+    First the continuous state, in Drake's order; then each block's discrete state, numeric parameters and free inputs
+    (those that no block feeds); then the outputs that have been asked for.
+
+    Args:
+        wiring: the blocks and their connections.
+        state: address of each block's continuous state.
+
+    Attributes:
+        size: length of the memory.
+        groups: address of every group of numbers: (block, ``state``, 0), (block, ``discrete``, k), (block,
+            ``parameter``, k) and (block, ``input``, port) of the free inputs.
+        used_inputs: the free inputs that something asked for depends on.
+    """
+
+    def __init__(self, wiring: Wiring, state: dict[Any, int]) -> None:
+        self._wiring = wiring
+        self._kinds = KindTable()
+        symbols = SymbolTable()
+        self.blocks = {block: TracedBlock(path, block, symbols) for path, block in wiring.blocks.items()}
+        self.size = sum(traced.sizes[1] for traced in self.blocks.values())
+        self.groups: dict[tuple[Any, str, int], int] = {(block, "state", 0): at for block, at in state.items()}
+        self.used_inputs: set[tuple[Any, int]] = set()
+        for block, traced in self.blocks.items():
+            inputs, _, discrete, parameters = traced.sizes
+            for space, sizes in (("discrete", discrete), ("parameter", parameters), ("input", inputs)):
+                for group, size in enumerate(sizes):
+                    if size >= 0 and (space != "input" or not wiring.source(block, group)):
+                        self.groups[block, space, group] = self._allocate(size)
+        self._outputs: dict[Any, Job | None] = {}
+
+    def address(self, block: Any, port: int) -> int:
+        """Address of an output port of a block."""
+        return self._output(block, port).address
+
+    def derivatives(self) -> Program:
+        """What computes the time derivatives of all continuous state."""
+        jobs = []
+        for block, traced in self.blocks.items():
+            if traced.sizes[1]:
+                kind = self._kinds.find(traced, DERIVATIVES)
+                jobs.append(Job(block, kind, self._level(block, kind), self.groups[block, "state", 0]))
+        return self._program(self._needed(jobs), jobs)
+
+    def outputs(self, ports: Iterable[Port]) -> Program:
+        """What computes some output ports."""
+        jobs = [self._output(block, port) for block, port in ports]
+        return self._program(self._needed(jobs) + [job for job in jobs if not job.kind.copied], [])
+
+    def _output(self, block: Any, port: int) -> Job:
+        """The job of an output port; its address is that of its source where it merely passes numbers on."""
+        key = (block, port)
+        if key not in self._outputs:
+            self._outputs[key] = None
+            kind = self._kinds.find(self.blocks[block], port)
+            level = self._level(block, kind)
+            address = self._leaf_address(block, kind.copied) if kind.copied else self._allocate(len(kind.roots))
+            self._outputs[key] = Job(block, kind, level, address)
+        job = self._outputs[key]
+        if job is None:
+            raise LoweringError(self.blocks[block].path, "it is part of an algebraic loop")
+        return job
+
+    def _sources(self, block: Any, kind: Kind) -> list[Job]:
+        sources = [self._wiring.source(block, port) for port in kind.ports]
+        return [self._output(*source) for source in sources if source]
+
+    def _level(self, block: Any, kind: Kind) -> int:
+        """The level at which everything is there that a kind reads, from 0."""
+        self.used_inputs |= {(block, port) for port in kind.ports if (block, "input", port) in self.groups}
+        return max((job.level + (not job.kind.copied) for job in self._sources(block, kind)), default=0)
+
+    def _leaf_address(self, block: Any, leaf: Leaf) -> int:
+        source = self._wiring.source(block, leaf.group) if leaf.space == "input" else None
+        start = self.address(*source) if source else self.groups[block, leaf.space, leaf.group]
+        return start + leaf.offset
+
+    def _needed(self, jobs: list[Job]) -> list[Job]:
+        """Every job that computes something which the given ones read."""
+        needed: dict[int, Job] = {}
+        waiting = list(jobs)
+        while waiting:
+            job = waiting.pop()
+            for source in self._sources(job.block, job.kind):
+                if id(source) not in needed:
+                    needed[id(source)] = source
+                    waiting.append(source)
+        return [job for job in needed.values() if not job.kind.copied]
+
+    def _program(self, outputs: list[Job], derivatives: list[Job]) -> Program:
+        unique = list({id(job): job for job in outputs}.values())
+        first, last = self._steps(unique), self._steps(derivatives)
+        bodies = [body for _, body in first], [body for _, body in last]
+        return Program(*bodies, _packed([*first.values(), *last.values()]))
+
+    def _steps(self, jobs: list[Job]) -> dict[tuple[int, str], list[list[int]]]:
+        """Rows of each kernel, in the order in which the kernels run."""
+        steps: dict[tuple[int, str], list[list[int]]] = {}
+        for job in sorted(jobs, key=lambda job: (job.level, job.kind.kernel.body)):
+            kernel, ports = job.kind.kernel, job.kind.ports
+            groups = [self.groups[(job.block, *group)] for group in kernel.groups]
+            inputs = [
+                self._leaf_address(job.block, Leaf("input", port, 0)) if port in ports else 0
+                for port in range(max(ports, default=-1) + 1)
+            ]
+            row = [job.address, *groups, *kernel.turns, *inputs]
+            steps.setdefault((job.level, kernel.body), []).append(row)
+        return steps
+
+    def _allocate(self, size: int) -> int:
+        self.size += size
+        return self.size - size
+
+
+def _packed(steps: list[list[list[int]]]) -> Table:
+    head: list[int] = []
+    lists: list[int] = []
+    rows: list[int] = []
+    lists_at = 2 * len(steps)
+    rows_at = lists_at + sum(len(step) for step in steps)
+    for step in steps:
+        head += [lists_at + len(lists), len(step)]
+        for row in step:
+            lists.append(rows_at + len(rows))
+            rows += row
+    return np.array([*head, *lists, *rows], dtype=np.uint32)

@@ -1,0 +1,141 @@
+"""What a block computes, traced with Drake's symbolic scalar."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from pydrake.symbolic import Expression, Variable
+from pydrake.systems.framework import Context, LeafSystem, PortDataType
+
+from drake_formation.lowering.errors import LoweringError
+from drake_formation.lowering.expressions import Leaf
+
+DERIVATIVES = -1
+"""What stands for the time derivatives where otherwise the index of an output port stands."""
+
+Sizes = tuple[tuple[int, ...], int, tuple[int, ...], tuple[int, ...]]
+"""Sizes of a block's inputs (−1: abstract), continuous state, discrete groups and numeric parameter groups."""
+
+
+@dataclass(frozen=True)
+class Symbols:
+    """A variable for every number that a block of some sizes can read."""
+
+    time: Expression
+    inputs: list[Any]
+    state: Any
+    discrete: list[Any]
+    parameters: list[Any]
+    leaf_of: dict[int, Leaf]
+
+
+class SymbolTable:
+    """Symbols by the sizes of a block, so that blocks of the same sizes are traced with the same symbols.
+
+    They are made in one order for all: Drake sorts expressions by the age of their variables, and terms that differ
+    only in their port or parameter must be sorted alike.
+    """
+
+    def __init__(self) -> None:
+        self._symbols: dict[Sizes, Symbols] = {}
+
+    def of(self, sizes: Sizes) -> Symbols:
+        """Symbols for the blocks of some sizes."""
+        if sizes not in self._symbols:
+            self._symbols[sizes] = _make_symbols(*sizes)
+        return self._symbols[sizes]
+
+
+def _make_symbols(
+    inputs: tuple[int, ...], state: int, discrete: tuple[int, ...], parameters: tuple[int, ...]
+) -> Symbols:
+    leaf_of: dict[int, Leaf] = {}
+
+    def group(space: str, number: int, size: int) -> Any:
+        variables = [Variable(f"{space}_{number}_{index}") for index in range(size)]
+        leaf_of.update({v.get_id(): Leaf(space, number, index) for index, v in enumerate(variables)})
+        return np.array([Expression(variable) for variable in variables], dtype=object)
+
+    return Symbols(
+        time=group("time", 0, 1)[0],
+        state=group("state", 0, state),
+        discrete=[group("discrete", k, size) for k, size in enumerate(discrete)],
+        inputs=[group("input", k, size) for k, size in enumerate(inputs)],
+        parameters=[group("parameter", k, size) for k, size in enumerate(parameters)],
+        leaf_of=leaf_of,
+    )
+
+
+class TracedBlock:
+    """A block in symbols.
+
+    Args:
+        path: its place in the diagram, such as ``robot_1/plant``.
+        block: the block.
+        symbols: where to take the symbols from.
+    """
+
+    def __init__(self, path: str, block: LeafSystem, symbols: SymbolTable) -> None:
+        self.path = path
+        self.block = block
+        context = block.CreateDefaultContext()
+        self.sizes: Sizes = (
+            tuple(_vector_size(block.get_input_port(k)) for k in range(block.num_input_ports())),
+            context.num_continuous_states(),
+            tuple(
+                context.get_discrete_state().get_vector(k).size() for k in range(context.num_discrete_state_groups())
+            ),
+            tuple(context.get_numeric_parameter(k).size() for k in range(context.num_numeric_parameter_groups())),
+        )
+        self._symbols = symbols
+
+    @property
+    def symbols(self) -> Symbols:
+        """The symbols it is traced with."""
+        return self._symbols.of(self.sizes)
+
+    def trace(self, function: int) -> list[Any]:
+        """Expressions of an output port or of the time derivatives.
+
+        Args:
+            function: index of the output port, or ``DERIVATIVES``.
+
+        Raises:
+            LoweringError: Drake or the block's own code cannot do that in symbols.
+        """
+        system, context = self._symbolic
+        if function != DERIVATIVES and _vector_size(system.get_output_port(function)) < 0:
+            raise LoweringError(self.path, "an output port of it that is needed is abstract")
+        try:
+            if function == DERIVATIVES:
+                values = system.EvalTimeDerivatives(context).CopyToVector()
+            else:
+                values = system.get_output_port(function).Eval(context)
+        except Exception as error:
+            raise LoweringError(self.path, f"its code does not run in symbols: {error}") from error
+        return list(np.ravel(values))
+
+    @cached_property
+    def _symbolic(self) -> tuple[Any, Context]:
+        try:
+            system = self.block.ToSymbolic()
+        except Exception as error:
+            raise LoweringError(self.path, f"it does not convert to Drake's symbolic scalar: {error}") from error
+        context = system.CreateDefaultContext()
+        symbols = self.symbols
+        context.SetTime(symbols.time)
+        for k, values in enumerate(symbols.inputs):
+            if self.sizes[0][k] >= 0:
+                system.get_input_port(k).FixValue(context, values)
+        if self.sizes[1]:
+            context.SetContinuousState(symbols.state)
+        for k, values in enumerate(symbols.discrete):
+            context.SetDiscreteState(k, values)
+        for k, values in enumerate(symbols.parameters):
+            context.get_mutable_numeric_parameter(k).SetFromVector(values)
+        return system, context
+
+
+def _vector_size(port: Any) -> int:
+    return int(port.size()) if port.get_data_type() == PortDataType.kVectorValued else -1

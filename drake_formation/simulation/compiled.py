@@ -1,0 +1,136 @@
+"""The compiled engine: the diagram lowered once, integrated piece by piece."""
+
+import numpy as np
+from numpy.typing import NDArray
+from pydrake.systems.framework import Context, Diagram
+
+from drake_formation.lowering import CompiledDiagram, Status, lower
+from drake_formation.parameters import robot_name
+from drake_formation.scenario import Scenario, ScenarioError, derive
+from drake_formation.scenario.errors import Fault, shown
+from drake_formation.simulation.engines import Progress, Start
+from drake_formation.simulation.recorder import RECORDED, NonFiniteStateError
+
+Array = NDArray[np.float64]
+
+
+def start(scenario: Scenario, diagram: Diagram) -> Start:
+    """Compile a diagram; the result starts runs of it.
+
+    Raises:
+        ScenarioError: the simulator's settings ask for what is not compiled.
+        LoweringError: a block cannot be compiled.
+    """
+    settings, faults = scenario.simulator, []
+    if settings.integration_scheme != "runge_kutta5":
+        scheme = shown(settings.integration_scheme)
+        faults.append(Fault(("simulator", "integration_scheme"), "not compiled", scheme, "runge_kutta5"))
+    if settings.target_realtime_rate:
+        rate = shown(settings.target_realtime_rate)
+        faults.append(Fault(("simulator", "target_realtime_rate"), "a compiled run keeps no clock", rate, "0"))
+    if faults:
+        raise ScenarioError(faults)
+    lowered = lower(diagram)
+    return lambda context, progress: CompiledRun(scenario, lowered, context, progress)
+
+
+class CompiledRun:
+    """A run of a compiled diagram; its Context is brought up to date after every piece of the trajectory.
+
+    Args:
+        scenario: what runs.
+        lowered: its diagram.
+        context: where to start.
+        progress: called with the simulated time (s) after every piece.
+    """
+
+    def __init__(
+        self, scenario: Scenario, lowered: CompiledDiagram, context: Context, progress: Progress | None
+    ) -> None:
+        settings = scenario.simulator
+        self.context = context
+        self.fixed_step = not settings.use_error_control
+        self.recording = CompiledRecording(lowered, derive.robot_count(scenario.formation))
+        self._lowered, self._progress = lowered, progress
+        self._accuracy, self._max_step = settings.accuracy, settings.max_step_size
+        self._updated_at = -np.inf
+        context.SetTime(context.get_time() or settings.start_time)
+
+    def advance(self, end: float) -> None:
+        """Go on to a time (s), updates due then not included.
+
+        Raises:
+            NonFiniteStateError: the state is not finite any more.
+            RuntimeError: the integrator gave up.
+        """
+        self.carry_out_updates()
+        pieces = self._lowered.integrate(
+            self.context,
+            end,
+            accuracy=self._accuracy,
+            max_step=self._max_step,
+            adaptive=not self.fixed_step,
+            updated=True,
+        )
+        for piece in pieces:
+            self.recording.add(piece.times, piece.states, piece.values)
+            if self._progress:
+                self._progress(self.context.get_time())
+            if piece.status == Status.NOT_FINITE:
+                raise NonFiniteStateError
+            if piece.status == Status.STEP_TOO_SMALL:
+                raise RuntimeError("its steps became too small to go on")
+
+    def carry_out_updates(self) -> None:
+        """Carry out the updates due now unless that is done, and record what they change."""
+        time = self.context.get_time()
+        if time == self._updated_at:
+            return
+        self._updated_at = time
+        self._lowered.updates.carry_out(self.context)
+        state = self.context.get_continuous_state_vector().CopyToVector()
+        self.recording.add(np.array([time]), state[None], self._lowered.read(self.context))
+
+
+class CompiledRecording:
+    """What a compiled run leaves behind.
+
+    Args:
+        lowered: a compiled formation diagram.
+        robots: number of robots N.
+    """
+
+    def __init__(self, lowered: CompiledDiagram, robots: int) -> None:
+        self._lowered = lowered
+        self._ports = {name: [f"{robot_name(i)}_{name}" for i in range(robots)] for name in RECORDED}
+        self._sizes = {name: lowered.diagram.GetOutputPort(ports[0]).size() for name, ports in self._ports.items()}
+        self._times: list[Array] = []
+        self._pieces: list[dict[str, Array]] = []
+
+    def add(self, times: Array, states: Array, values: Array) -> None:
+        """Keep samples; one at the time of the last sample replaces it (the hand-off changes forces in no time)."""
+        if not len(times):
+            return
+        names = ["phase", *(port for ports in self._ports.values() for port in ports)]
+        piece = self._lowered.outputs(names, times, states, values)
+        if self._times and self._times[-1][-1] == times[0]:
+            self._times[-1] = self._times[-1][:-1]
+            self._pieces[-1] = {name: series[:-1] for name, series in self._pieces[-1].items()}
+        self._times.append(times)
+        self._pieces.append(piece)
+
+    @property
+    def times(self) -> Array:
+        """Sample times (s), shape (samples,)."""
+        return np.concatenate([np.zeros(0), *self._times])
+
+    @property
+    def phases(self) -> Array:
+        """0 during aggregation, 1 during transport; shape (samples,)."""
+        return np.concatenate([np.zeros(0), *(piece["phase"][:, 0] for piece in self._pieces)])
+
+    def series(self, port: str) -> Array:
+        """Values of a recorded port, shape (samples, N, size)."""
+        ports, size = self._ports[port], self._sizes[port]
+        columns = [np.concatenate([np.zeros((0, size)), *(piece[name] for piece in self._pieces)]) for name in ports]
+        return np.stack(columns, axis=1)

@@ -1,0 +1,92 @@
+"""What carries a run forward in time: Drake's Simulator, or the diagram compiled."""
+
+from collections.abc import Callable
+from typing import Protocol
+
+from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
+from pydrake.systems.framework import Context, Diagram
+
+from drake_formation.scenario import Scenario, derive
+from drake_formation.simulation.recorder import Recorder, Recording
+
+Progress = Callable[[float], None]
+
+
+class Engine(Protocol):
+    """A run from a Context's time and state, which go along."""
+
+    @property
+    def context(self) -> Context:
+        """Where the run is."""
+
+    @property
+    def recording(self) -> Recording:
+        """What was recorded until now."""
+
+    @property
+    def fixed_step(self) -> bool:
+        """Whether every step is the largest, for want of error control."""
+
+    def advance(self, end: float) -> None:
+        """Go on to a time (s), updates due then not included.
+
+        Raises:
+            RuntimeError, ArithmeticError, SystemExit: the run cannot go on.
+        """
+
+    def carry_out_updates(self) -> None:
+        """Carry out the updates due now, and record what that changes."""
+
+
+Start = Callable[[Context, Progress | None], Engine]
+"""Makes an engine that runs from a Context; called with the simulated time after every step."""
+
+
+def blocks(scenario: Scenario, diagram: Diagram) -> Start:
+    """The diagram itself, on Drake's Simulator."""
+    return lambda context, progress: _Blocks(scenario, diagram, context, progress)
+
+
+def compiled(scenario: Scenario, diagram: Diagram) -> Start:
+    """The diagram compiled; see :mod:`drake_formation.lowering`.
+
+    Raises:
+        ScenarioError: the simulator's settings ask for what is not compiled.
+        LoweringError: a block cannot be compiled.
+    """
+    from drake_formation.simulation.compiled import start  # building diagrams need not pay for the compiler
+
+    return start(scenario, diagram)
+
+
+ENGINES: dict[str, Callable[[Scenario, Diagram], Start]] = {"blocks": blocks, "compiled": compiled}
+
+
+class _Blocks:
+    def __init__(self, scenario: Scenario, diagram: Diagram, context: Context, progress: Progress | None) -> None:
+        self.recording = Recorder(diagram, derive.robot_count(scenario.formation), progress)
+        self._simulator = Simulator(diagram, context)
+        config = SimulatorConfig(**scenario.simulator.model_dump())
+        # Drake's start_time overwrites the Context's, which may already be at the hand-off.
+        config.start_time = context.get_time() or config.start_time
+        ApplySimulatorConfig(config, self._simulator)
+        self._simulator.set_monitor(self.recording)
+        self._started = False
+
+    @property
+    def context(self) -> Context:
+        return self._simulator.get_context()
+
+    @property
+    def fixed_step(self) -> bool:
+        return bool(self._simulator.get_integrator().get_fixed_step_mode())
+
+    def advance(self, end: float) -> None:
+        if not self._started:
+            self._simulator.Initialize()
+            self._started = True
+        self._simulator.AdvanceTo(end)
+
+    def carry_out_updates(self) -> None:
+        self._simulator.AdvancePendingEvents()
+        self.recording(self.context)

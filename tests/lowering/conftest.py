@@ -1,0 +1,12 @@
+"""Compiled code of the tests is kept in a folder of their own, for one session."""
+
+import pytest
+
+from drake_formation.lowering import cache
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _own_cache(tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(cache.FOLDER, str(tmp_path_factory.mktemp("cache")))
+        yield

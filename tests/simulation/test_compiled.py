@@ -1,0 +1,45 @@
+"""The compiled engine gives the results of the blocks."""
+
+import numpy as np
+import pytest
+
+from drake_formation import ScenarioError, SimulationError, load_scenario, metrics, simulate
+
+SHORT = {"aggregation.duration": 2.0, "transport.duration": 6.0, "simulator.accuracy": 1e-8}
+
+
+@pytest.mark.parametrize("name", ["line", "quadrilateral"])
+def test_same_result(name):
+    scenario = load_scenario(name, overrides=SHORT)
+    found, expected = (simulate(scenario, engine=engine) for engine in ("compiled", "blocks"))
+    assert found.sizes.keys() == expected.sizes.keys()
+    assert {key: value.dims for key, value in found.variables.items()} == {
+        key: value.dims for key, value in expected.variables.items()
+    }
+    assert np.diff(found["time"]).max() <= scenario.simulator.max_step_size * (1 + 1e-12)
+    for time in (2.0, 8.0):
+        for variable in ("position", "velocity", "control_force", "phase"):
+            np.testing.assert_allclose(
+                found[variable].sel(time=time), expected[variable].sel(time=time), rtol=0, atol=1e-4
+            )
+
+
+def test_the_published_line():
+    figures = metrics(simulate(load_scenario("line"), engine="compiled"))
+    np.testing.assert_allclose(figures.tracking_error_m, [0.1868, 0.1686], rtol=0, atol=1e-4)
+    assert figures.consensus_error_m == pytest.approx(0.0961, abs=1e-4)
+    assert figures.peak_force_n == pytest.approx(22.5, abs=1e-2)
+
+
+def test_another_integrator_is_refused():
+    scenario = load_scenario("line", overrides={"simulator.integration_scheme": "runge_kutta3"})
+    with pytest.raises(ScenarioError, match="integration_scheme"):
+        simulate(scenario, engine="compiled")
+
+
+def test_a_run_that_diverges_keeps_what_was_recorded():
+    overrides = {"consensus.delta": 1e8, "simulator.use_error_control": False, "aggregation.duration": 1.0}
+    with pytest.raises(SimulationError, match="no longer finite") as caught:
+        simulate(load_scenario("line", overrides=overrides), engine="compiled")
+    assert caught.value.partial.sizes["time"] > 1
+    assert np.isfinite(caught.value.partial["position"]).all()

@@ -2,6 +2,7 @@
 
 import json
 import sys
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
@@ -40,6 +41,13 @@ Overrides = Annotated[
 console = Console()
 
 
+class EngineName(StrEnum):
+    """What carries a run out."""
+
+    BLOCKS = "blocks"
+    COMPILED = "compiled"
+
+
 def main() -> None:
     """Entry point of the command; turns what a user can do wrong into a message and an exit status."""
     try:
@@ -47,7 +55,7 @@ def main() -> None:
     except ScenarioError as error:
         _stop(str(error), WRONG_INPUT)
     except KeyboardInterrupt:
-        _stop("interrupted; nothing was written", INTERRUPTED)
+        _stop("interrupted", INTERRUPTED)
 
 
 @app.command()
@@ -55,8 +63,12 @@ def run(
     scenario: Source,
     overrides: Overrides = None,
     out: Annotated[Path | None, typer.Option(help="Folder for the results; out/NAME if not given.")] = None,
+    engine: Annotated[
+        EngineName, typer.Option(help="The block diagram itself, or code compiled from it.")
+    ] = EngineName.BLOCKS,
 ) -> None:
     """Run a scenario and write its metrics, result, diagram and figures."""
+    from drake_formation.lowering.errors import LoweringError
     from drake_formation.metrics import metrics
     from drake_formation.output import OutputError, require_place, write_failed_run, write_run
     from drake_formation.simulation import SimulationError
@@ -65,13 +77,13 @@ def run(
     folder = out or Path("out") / resolved.name
     try:
         require_place(folder)
-        result = _simulate_with_progress(resolved)
+        result = _simulate_with_progress(resolved, engine)
         figures = metrics(result)
         write_run(folder, resolved, result, figures)
     except SimulationError as error:
         kept = write_failed_run(folder, resolved, error.partial, str(error))
         _stop(f"{error}\nWhat was recorded until then is in {kept}.", FAILED_RUN)
-    except OutputError as error:
+    except (OutputError, LoweringError) as error:
         _stop(str(error), WRONG_INPUT)
     console.print(_summary(resolved, figures.to_dict()))
     console.print(f"Results in {folder}, pictures in {folder / 'figures'}.", soft_wrap=True)
@@ -103,6 +115,27 @@ def graphviz(
 
 
 @app.command()
+def reproduce(
+    only: Annotated[list[str] | None, typer.Option(metavar="NAME", help="A part, such as table3, fig7 or fit.")] = None,
+    out: Annotated[Path, typer.Option(help="Folder for the report and the runs it is made of.")] = Path("out/paper"),
+) -> None:
+    """Rerun the paper's study and write a report: tables, figures and claims."""
+    from drake_formation.paper.reproduce import reproduce as run_study
+    from drake_formation.simulation import SimulationError
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed} / {task.total} runs"))
+    with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task("study", total=None)
+        try:
+            run_study(out, only or (), lambda done, total: progress.update(task, completed=done, total=total))
+        except ValueError as error:
+            _stop(str(error), WRONG_INPUT)
+        except SimulationError as error:
+            _stop(str(error), FAILED_RUN)
+    console.print(f"Report in {out / 'report.html'}, tables in {out / 'tables.csv'}.", soft_wrap=True)
+
+
+@app.command()
 def schema() -> None:
     """Print the JSON Schema of a scenario, for editors."""
     print(json.dumps(json_schema(), indent=2, ensure_ascii=False))
@@ -118,7 +151,7 @@ def scenarios() -> None:
     console.print(table)
 
 
-def _simulate_with_progress(scenario: Scenario) -> "xr.Dataset":
+def _simulate_with_progress(scenario: Scenario, engine: EngineName) -> "xr.Dataset":
     from drake_formation.simulation import simulate, simulated_duration
 
     total = simulated_duration(scenario)
@@ -130,7 +163,7 @@ def _simulate_with_progress(scenario: Scenario) -> "xr.Dataset":
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         task = progress.add_task(scenario.name, total=total)
-        return simulate(scenario, progress=lambda time: progress.update(task, completed=time))
+        return simulate(scenario, engine=engine.value, progress=lambda time: progress.update(task, completed=time))
 
 
 def _summary(scenario: Scenario, figures: dict[str, Any]) -> Table:

@@ -171,3 +171,16 @@ def test_the_module_is_the_command():
     assert done.returncode == 2
     assert "nothing" in done.stderr
     assert "Traceback" not in done.stderr
+
+
+def test_reproduce_writes_a_report(cli):
+    status, out, _ = cli("reproduce", "--only", "table1", "--out", "paper")
+    assert status == 0
+    assert "paper/report.html" in out
+    assert Path("paper/report.html").exists()
+
+
+def test_reproduce_names_the_nearest_part(cli):
+    status, _, err = cli("reproduce", "--only", "tabel3")
+    assert status == 2
+    assert "did you mean 'table3'" in err

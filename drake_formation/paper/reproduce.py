@@ -1,0 +1,48 @@
+"""Rerun the study, or parts of it, and write the report."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from drake_formation.paper.report import write_report
+from drake_formation.paper.store import Store
+from drake_formation.paper.study import PARTS
+from drake_formation.scenario.errors import nearest
+
+Progress = Callable[[int, int], None]
+"""Called with how many of the missing runs are done, and how many there are."""
+
+
+def reproduce(folder: Path, only: Sequence[str] = (), progress: Progress | None = None) -> None:
+    """Make every run that is missing in a folder, and write the report of the named parts there.
+
+    Args:
+        folder: for the report and, in ``runs``, the results; made if missing.
+        only: names of parts; all if empty.
+        progress: called before the first run and after each.
+
+    Raises:
+        ValueError: a part is unknown.
+    """
+    for name in only:
+        if name not in PARTS:
+            raise ValueError(f"no part {name!r} of the study{_hint(name)}; there are {', '.join(PARTS)}")
+    parts = [part for name, part in PARTS.items() if not only or name in only]
+    store = Store(folder / "runs")
+    wanted = [scenario for part in parts for scenario in part.runs()]
+    total, done = len(store.missing(wanted)), 0
+
+    def count() -> None:
+        nonlocal done
+        done += 1
+        if progress:
+            progress(done, total)
+
+    if progress:
+        progress(0, total)
+    store.run(wanted, count)
+    write_report(folder, [part.make(store) for part in parts])
+
+
+def _hint(name: str) -> str:
+    near = nearest(name, PARTS)
+    return f", did you mean {near!r}?" if near else ""

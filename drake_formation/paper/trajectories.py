@@ -1,0 +1,65 @@
+"""The s-curve of Fig. 19, and the set point beside planned references: how the published numbers come out."""
+
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from drake_formation.metrics import length, metrics
+from drake_formation.paper.curves import draw_transport, phase, since_hand_off
+from drake_formation.paper.runs import transport
+from drake_formation.paper.store import Store
+from drake_formation.scenario import Scenario, load_scenario, with_overrides
+
+REFERENCES: dict[str, dict[str, Any]] = {
+    "set point": {},
+    "minimum jerk": {"transport.reference": {"kind": "minimum_jerk"}},
+    "minimum jerk, feed-forward": {"transport.reference": {"kind": "minimum_jerk"}, "tracking.feed_forward": True},
+    "plan around known obstacles": {"transport.reference": {"kind": "potential_field"}},
+}
+"""References of the comparison, as overrides."""
+
+
+def referenced(name: str) -> Scenario:
+    """The quadrilateral with rubber and without consensus, following a reference."""
+    return with_overrides(transport("quadrilateral", "rubber", 0.0), REFERENCES[name])
+
+
+def trajectory_runs() -> list[Scenario]:
+    """The runs of the comparison."""
+    return [referenced(name) for name in REFERENCES]
+
+
+def comparison(store: Store) -> str:
+    """Peak force, errors and lag by reference, as a Markdown table."""
+    rows = [
+        "| reference | peak force (N) | largest ‖ε‖ (cm) | largest ‖e‖ (cm) | largest lag (m) |",
+        "| --- " * 5 + "|",
+    ]
+    for name in REFERENCES:
+        result = store[referenced(name)]
+        figures = metrics(result)
+        lag = float(length(phase(result, 1)["tracking_error"]).max())
+        rows.append(
+            f"| {name} | {figures.peak_force_n:.1f} | {100 * max(figures.tracking_error_m):.1f} | "
+            f"{100 * figures.consensus_error_m:.2f} | {lag:.2f} |"
+        )
+    return "\n".join(rows)
+
+
+def s_curve() -> Scenario:
+    """The shipped s-curve."""
+    return load_scenario("s_curve")
+
+
+def s_curve_figure(store: Store) -> Figure:
+    """Paths along the s-curve, and the distances between the robots (Fig. 19)."""
+    carried = phase(store[s_curve()], 1)
+    figure = Figure(figsize=(10, 7), layout="constrained")
+    plane, springs = figure.subplots(2, height_ratios=[2, 1])
+    draw_transport(plane, carried)
+    plane.set(xlabel="x (m)", ylabel="y (m)")
+    elongation = 100 * abs(carried["spring_length"] - carried["rest_length"]).max("spring")
+    springs.plot(since_hand_off(carried), elongation)
+    springs.set(xlabel="time since hand-off (s)", ylabel="largest |d − r| (cm)")
+    springs.grid(alpha=0.3)
+    return figure

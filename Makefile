@@ -6,13 +6,14 @@ BIN := $(VENV)/bin
 # pip installs from outside, so that the environment needs no pip of its own (Debian ships venv without it).
 PIP := $(PYTHON) -m pip --python $(BIN)/python --disable-pip-version-check
 
-.PHONY: help demo test check lint types notebooks diagrams bench clean
+.PHONY: help demo test check lint types notebooks diagrams reproduce bench clean
 
 help:
 	@echo "make demo       run the paper's line formation and say where the pictures are"
 	@echo "make test       run the whole test suite"
 	@echo "make check      lint, types and tests"
 	@echo "make diagrams   export the pictures in diagrams/ anew"
+	@echo "make reproduce  rerun the paper's study into out/paper"
 	@echo "make bench      measure speed"
 	@echo "make clean      remove the environment and all results"
 
@@ -37,9 +38,15 @@ diagrams: $(VENV)/installed
 	done
 	$(BIN)/drake-formation run line --out out/line
 	cp out/line/figures/paths.png diagrams/line-paths.png
+	$(BIN)/drake-formation reproduce --only fig11 --out out/paper
+	cp out/paper/figures/fig11.png diagrams/paper-fig11.png
+
+reproduce: $(VENV)/installed
+	$(BIN)/drake-formation reproduce --out out/paper
 
 bench: $(VENV)/installed-dev
 	$(BIN)/python tests/benchmarks/bench.py
+	$(BIN)/python tests/benchmarks/lowered.py
 
 clean:
 	rm -rf $(VENV) out build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis

@@ -100,7 +100,7 @@ def graphviz(
     scenario: Source,
     output: Annotated[Path, typer.Option("--output", "-o", help="File ending in .dot, .svg, .png or .pdf.")],
     overrides: Overrides = None,
-    depth: Annotated[int, typer.Option(min=0, help="1 shows the robots, 2 opens each of them.")] = 1,
+    depth: Annotated[int, typer.Option(min=1, help="1 shows the robots, 2 opens each of them.")] = 1,
 ) -> None:
     """Draw a scenario's block diagram."""
     from drake_formation.diagram import build_diagram

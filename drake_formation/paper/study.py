@@ -8,7 +8,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from drake_formation.diagram import build_diagram
-from drake_formation.paper import curves, schematics
+from drake_formation.paper import curves, readings, schematics
 from drake_formation.paper.claims import CLAIMS, Claim, claim_runs
 from drake_formation.paper.fit import fit
 from drake_formation.paper.published import PROVENANCE
@@ -136,6 +136,18 @@ def _trajectories(store: Store) -> Section:
     )
 
 
+def _readings(store: Store) -> Section:
+    return Section(
+        title="Readings",
+        text=(
+            "The paper says that an obstacle can only be detected by the nearest robot. Cells of the tables that "
+            "agree when "
+            "every robot within ρ0 feels an obstacle, and when only the nearest of them does; η is not fitted "
+            "again:\n\n" + readings.comparison(store)
+        ),
+    )
+
+
 def _sensitivity(store: Store) -> Section:
     return Section(
         title="Sensitivity to the inferred parameters",
@@ -242,6 +254,7 @@ def _parts() -> dict[str, Part]:
         "claims": Part(runs=claim_runs, make=_claims),
         "fit": Part(runs=_no_runs, make=_fit),
         "trajectories": Part(runs=trajectory_runs, make=_trajectories),
+        "readings": Part(runs=readings.reading_runs, make=_readings),
         "sensitivity": Part(runs=sensitivity_runs, make=_sensitivity),
         **figures,
     }

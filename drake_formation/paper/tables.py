@@ -77,12 +77,12 @@ class Quantity:
     measure: Callable[[Metrics], list[float]]
     reason: Callable[["Quantity", str, float, Metrics], str]
 
-    def cells(self, store: Store) -> Iterator[Cell]:
-        """The cells, from the store's runs."""
+    def cells(self, store: Store, run: Callable[[str, str, float], Scenario] = transport) -> Iterator[Cell]:
+        """The cells, from the store's runs; ``run`` says which one a formation, a material and a gain name."""
         for material, by_gain in published()[self.formation][self.key].items():
             for delta in GAINS:
                 printed = by_gain[delta]
-                figures = metrics(store[transport(self.formation, material, delta)])
+                figures = metrics(store[run(self.formation, material, delta)])
                 ours = self.measure(figures)
                 printed_each = printed if isinstance(printed, list) else [printed]
                 for robot, (theirs, mine) in enumerate(zip(printed_each, ours, strict=True), start=1):

@@ -48,10 +48,13 @@ def simulate(scenario: Scenario, *, engine: str = "blocks", progress: Progress |
         The labelled result; see :func:`drake_formation.simulation.result.labelled_result`.
 
     Raises:
+        ValueError: there is no such engine.
         ScenarioError: the scenario is wrong, or asks for an integrator that the compiled engine does not have.
         LoweringError: a block of the diagram cannot be compiled.
         SimulationError: the run diverged or the integrator gave up; it carries what was recorded.
     """
+    if engine not in ENGINES:
+        raise ValueError(f"no engine {engine!r}; there are {', '.join(ENGINES)}")
     diagram = build_diagram(scenario)
     start = ENGINES[engine](scenario, diagram)
     begin, hand_off, end = scenario.simulator.start_time, derive.hand_off_time(scenario), derive.end_time(scenario)

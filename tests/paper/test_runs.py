@@ -1,0 +1,25 @@
+"""The runs of the study are the shipped scenarios with a few fields replaced."""
+
+import pytest
+
+from drake_formation.formation import graphs
+from drake_formation.paper.runs import FORMATIONS, GAINS, MATERIALS, TOPOLOGIES, aggregation, topology, transports
+from drake_formation.scenario import derive
+
+
+@pytest.mark.parametrize("formation", FORMATIONS)
+def test_each_formation_has_a_run_for_every_material_and_gain(formation):
+    cells = {(run.springs.stiffness, run.consensus.delta) for run in transports(formation)}
+    assert cells == {(stiffness, delta) for stiffness in MATERIALS.values() for delta in GAINS}
+
+
+def test_topologies_are_connected_and_have_the_channels_they_are_named_after():
+    for name in TOPOLOGIES:
+        graph = derive.communication_graph(topology(name))
+        assert graphs.channels(graph) == int(name.split()[0])
+        assert graphs.algebraic_connectivity(graph) > 0
+
+
+def test_aggregation_keeps_the_object_of_the_shipped_scenario():
+    assert aggregation("line", 5.0).consensus.delta == 5.0
+    assert aggregation("line", 0.0).springs.stiffness == MATERIALS["rubber"]

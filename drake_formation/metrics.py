@@ -61,9 +61,10 @@ def metrics(result: xr.Dataset) -> Metrics:
 
 def length(vectors: xr.DataArray) -> xr.DataArray:
     """Euclidean length over the axes, units kept."""
-    lengths: xr.DataArray = xr.apply_ufunc(
-        np.linalg.norm, vectors, input_core_dims=[["axis"]], kwargs={"axis": -1}, keep_attrs=True
-    )
+    with np.errstate(over="ignore"):  # a run that diverged may end in numbers whose squares overflow
+        lengths: xr.DataArray = xr.apply_ufunc(
+            np.linalg.norm, vectors, input_core_dims=[["axis"]], kwargs={"axis": -1}, keep_attrs=True
+        )
     return lengths
 
 

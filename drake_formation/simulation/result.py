@@ -52,8 +52,9 @@ def labelled_result(scenario: Scenario, run: Recording, nominal: Recording | Non
     }
     forces = [vectors[name][0] for name in ("tracking_force", "consensus_force", "avoidance_force")]
     vectors["control_force"] = (np.sum(forces, axis=0), "N", "control u, the sum of the three (Eq. 8)")
-    lengths = np.linalg.norm(position[:, first] - position[:, second], axis=-1)
-    clearance = np.linalg.norm(position[:, :, None] - obstacles[:, :2], axis=-1) - obstacles[:, 2]
+    with np.errstate(over="ignore"):  # a run that diverged may end in numbers whose squares overflow
+        lengths = np.linalg.norm(position[:, first] - position[:, second], axis=-1)
+        clearance = np.linalg.norm(position[:, :, None] - obstacles[:, :2], axis=-1) - obstacles[:, 2]
     variables = {name: _variable(VECTOR, *content) for name, content in vectors.items()}
     variables |= {
         "spring_length": _variable(("time", "spring"), lengths, "m", "length d of a spring"),

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from drake_formation.diagram import build_diagram
 from drake_formation.paper import curves, readings, schematics
-from drake_formation.paper.claims import CLAIMS, Claim, claim_runs
+from drake_formation.paper.claims import CLAIMS, claim_runs
 from drake_formation.paper.fit import fit
 from drake_formation.paper.published import PROVENANCE
 from drake_formation.paper.runs import (
@@ -25,6 +25,7 @@ from drake_formation.paper.sensitivity import sensitivity, sensitivity_runs
 from drake_formation.paper.store import Store
 from drake_formation.paper.tables import Cell, table, table_runs
 from drake_formation.paper.trajectories import comparison, s_curve, s_curve_figure, trajectory_runs
+from drake_formation.paper.verdicts import Claim
 from drake_formation.scenario import Scenario, load_scenario
 
 Picture = Callable[[Path], None]

@@ -9,7 +9,8 @@ from pydantic import Tag
 from pydantic.fields import FieldInfo
 
 from drake_formation.scenario.errors import Path
-from drake_formation.scenario.schema import Scenario, Section
+from drake_formation.scenario.schema import Scenario
+from drake_formation.scenario.values import Section
 
 
 @dataclass(frozen=True)

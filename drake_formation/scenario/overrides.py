@@ -8,8 +8,9 @@ import numpy as np
 from pydantic import BaseModel
 
 from drake_formation.scenario.errors import Fault, Path, ScenarioError, dotted, shortened, shown
-from drake_formation.scenario.schema import Scenario, Section
+from drake_formation.scenario.schema import Scenario
 from drake_formation.scenario.source import Document, load_yaml
+from drake_formation.scenario.values import Section
 
 Overrides = Mapping[str, Any] | Sequence[str]
 """Dotted paths to values (``{"springs.stiffness": 3e4}``), or texts ``PATH=VALUE`` with a YAML value."""

@@ -1,0 +1,27 @@
+"""A claim of the paper and what became of it."""
+
+from dataclasses import dataclass
+
+HOLDS, CONDITION, FAILS = "holds", "holds with a condition", "does not hold"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Claim:
+    """A claim and what became of it.
+
+    Attributes:
+        claim: what the paper says, in our words.
+        verdict: ``HOLDS``, ``CONDITION`` or ``FAILS``.
+        evidence: the number that decides, and the condition.
+        source: the run or matrix it came from.
+    """
+
+    claim: str
+    verdict: str
+    evidence: str
+    source: str
+
+
+def verdict(mostly: bool, entirely: bool) -> str:
+    """Holds if it does entirely, with a condition if it does mostly."""
+    return (HOLDS if entirely else CONDITION) if mostly else FAILS

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+from drake_formation.paper.markdown import markdown_table
 from drake_formation.paper.runs import FORMATIONS, GAINS, MATERIALS, transport
 from drake_formation.paper.store import Store
 from drake_formation.paper.tables import TABLES, Cell
@@ -28,12 +29,12 @@ def reading_runs() -> list[Scenario]:
 
 def comparison(store: Store) -> str:
     """How many cells of each table agree by each reading, as a Markdown table."""
-    rows = [f"| who feels an obstacle | {' | '.join(TABLES)} | all |", "| --- " * (len(TABLES) + 2) + "|"]
+    rows = []
     for name, run in READINGS.items():
         tables = [[cell for quantity in TABLES[table] for cell in quantity.cells(store, run)] for table in TABLES]
         counts = [agreement(cells) for cells in [*tables, [cell for cells in tables for cell in cells]]]
-        rows.append(f"| {name} | {' | '.join(counts)} |")
-    return "\n".join(rows)
+        rows.append([name, *counts])
+    return markdown_table(["who feels an obstacle", *TABLES, "all"], rows)
 
 
 def agreement(cells: list[Cell]) -> str:

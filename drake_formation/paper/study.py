@@ -11,6 +11,7 @@ from drake_formation.diagram import build_diagram
 from drake_formation.paper import curves, readings, schematics
 from drake_formation.paper.claims import CLAIMS, claim_runs
 from drake_formation.paper.fit import fit
+from drake_formation.paper.markdown import markdown_table
 from drake_formation.paper.published import PROVENANCE
 from drake_formation.paper.runs import (
     AGGREGATION_GAINS,
@@ -25,7 +26,6 @@ from drake_formation.paper.sensitivity import sensitivity, sensitivity_runs
 from drake_formation.paper.store import Store
 from drake_formation.paper.tables import Cell, table, table_runs
 from drake_formation.paper.trajectories import comparison, s_curve, s_curve_figure, trajectory_runs
-from drake_formation.paper.verdicts import Claim
 from drake_formation.scenario import Scenario, load_scenario
 
 Picture = Callable[[Path], None]
@@ -67,10 +67,9 @@ def _no_runs() -> list[Scenario]:
 
 
 def _provenance(_store: Store) -> Section:
-    rows = "\n".join(f"| {name} | {value} | {source} |" for name, value, source in PROVENANCE)
     return Section(
         title="Parameters and where they come from",
-        text=f"| parameter | value | provenance |\n| --- | --- | --- |\n{rows}",
+        text=markdown_table(["parameter", "value", "provenance"], PROVENANCE),
     )
 
 
@@ -78,16 +77,20 @@ def _table(name: str, title: str, store: Store) -> Section:
     cells = table(name, store)
     reasons = list(dict.fromkeys(cell.reason for cell in cells if not cell.agrees))
     rows = [
-        f"| {cell.row} | {cell.column} | {cell.published:g} | {cell.ours:.4g} | {cell.difference:+.3g} | {cell.unit} | "
-        f"{'agrees' if cell.agrees else f'differs ({reasons.index(cell.reason) + 1})'} |"
+        [
+            cell.row,
+            cell.column,
+            f"{cell.published:g}",
+            f"{cell.ours:.4g}",
+            f"{cell.difference:+.3g}",
+            cell.unit,
+            "agrees" if cell.agrees else f"differs ({reasons.index(cell.reason) + 1})",
+        ]
         for cell in cells
     ]
-    heading = [
-        "| row | column | published | ours | difference | unit | |",
-        "| --- | --- | --- | --- | --- | --- | --- |",
-    ]
     notes = [f"{number}. {reason}." for number, reason in enumerate(reasons, start=1)]
-    return Section(title=title, text="\n".join([*heading, *rows, "", *notes]).rstrip(), cells=cells)
+    heading = ["row", "column", "published", "ours", "difference", "unit", ""]
+    return Section(title=title, text="\n".join([markdown_table(heading, rows), "", *notes]).rstrip(), cells=cells)
 
 
 def _figure(name: str, title: str, draw: Callable[[Store], Figure], store: Store) -> Section:
@@ -107,11 +110,9 @@ def _block_diagram(name: str, title: str, subsystem: str | None, _store: Store) 
 
 
 def _claims(store: Store) -> Section:
-    claims: list[Claim] = [examine(store) for examine in CLAIMS]
-    rows = "\n".join(f"| {c.claim} | **{c.verdict}** | {c.evidence} | {c.source} |" for c in claims)
-    return Section(
-        title="Claims", text=f"| claim | verdict | what decides it | source |\n| --- | --- | --- | --- |\n{rows}"
-    )
+    claims = [examine(store) for examine in CLAIMS]
+    rows = [[claim.claim, f"**{claim.verdict}**", claim.evidence, claim.source] for claim in claims]
+    return Section(title="Claims", text=markdown_table(["claim", "verdict", "what decides it", "source"], rows))
 
 
 def _fit(store: Store) -> Section:

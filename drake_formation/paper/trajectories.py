@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 
 from drake_formation.metrics import length, metrics
 from drake_formation.paper.curves import draw_transport, phase, since_hand_off
+from drake_formation.paper.markdown import markdown_table
 from drake_formation.paper.runs import transport
 from drake_formation.paper.store import Store
 from drake_formation.scenario import Scenario, load_scenario, with_overrides
@@ -31,19 +32,15 @@ def trajectory_runs() -> list[Scenario]:
 
 def comparison(store: Store) -> str:
     """Peak force, errors and lag by reference, as a Markdown table."""
-    rows = [
-        "| reference | peak force (N) | largest ‖ε‖ (cm) | largest ‖e‖ (cm) | largest lag (m) |",
-        "| --- " * 5 + "|",
-    ]
+    rows = []
     for name in REFERENCES:
         result = store[referenced(name)]
         figures = metrics(result)
         lag = float(length(phase(result, 1)["tracking_error"]).max())
-        rows.append(
-            f"| {name} | {figures.peak_force_n:.1f} | {100 * max(figures.tracking_error_m):.1f} | "
-            f"{100 * figures.consensus_error_m:.2f} | {lag:.2f} |"
-        )
-    return "\n".join(rows)
+        errors = [100 * max(figures.tracking_error_m), 100 * figures.consensus_error_m]
+        rows.append([name, f"{figures.peak_force_n:.1f}", f"{errors[0]:.1f}", f"{errors[1]:.2f}", f"{lag:.2f}"])
+    heading = ["reference", "peak force (N)", "largest ‖ε‖ (cm)", "largest ‖e‖ (cm)", "largest lag (m)"]
+    return markdown_table(heading, rows)
 
 
 def s_curve() -> Scenario:

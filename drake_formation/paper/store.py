@@ -15,7 +15,7 @@ import xarray as xr
 from drake_formation.scenario import Scenario, derive, to_yaml
 from drake_formation.simulation import simulate
 
-# Drake 1.51 leaks Python systems; a worker is replaced before that matters.
+# Drake 1.51 leaks Python systems; workers are replaced before that matters.
 RUNS_PER_WORKER = 32
 
 
@@ -59,18 +59,16 @@ class Store:
             done: called after each run.
         """
         missing = self.missing(scenarios)
-        if not missing:
-            return
-        with ProcessPoolExecutor(
-            max_workers=min(len(missing), os.cpu_count() or 1),
-            mp_context=multiprocessing.get_context("spawn"),
-            max_tasks_per_child=RUNS_PER_WORKER,
-        ) as pool:
-            for future in as_completed(
-                [pool.submit(run_to_file, scenario, self.path(scenario), self._engine) for scenario in missing]
-            ):
-                future.result()
-                done()
+        workers = os.cpu_count() or 1
+        # A new pool for every batch: the executor's own max_tasks_per_child deadlocks on some Pythons (gh-115634).
+        for first in range(0, len(missing), workers * RUNS_PER_WORKER):
+            batch = missing[first : first + workers * RUNS_PER_WORKER]
+            context = multiprocessing.get_context("spawn")
+            with ProcessPoolExecutor(min(len(batch), workers), mp_context=context) as pool:
+                runs = [pool.submit(run_to_file, scenario, self.path(scenario), self._engine) for scenario in batch]
+                for run in as_completed(runs):
+                    run.result()
+                    done()
 
 
 def run_to_file(scenario: Scenario, path: Path, engine: str) -> None:

@@ -40,3 +40,12 @@ def test_only_what_is_missing_is_run_once_each_on_all_processors(store):
 def test_the_longest_run_comes_first(store):
     stiff = load_scenario("octagon", overrides={"springs.stiffness": 3e4})
     assert store.missing([SHORT, stiff])[0] == stiff
+
+
+def test_more_runs_than_the_workers_may_make_are_made_all_the_same(store, monkeypatch):
+    monkeypatch.setattr("drake_formation.paper.store.RUNS_PER_WORKER", 1)
+    runs = [with_overrides(SHORT, {"springs.stiffness": float(k)}) for k in range(5)]
+    calls = []
+    store.run(runs, lambda: calls.append(1))
+    assert len(calls) == 5
+    assert not store.missing(runs)

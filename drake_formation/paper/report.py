@@ -14,8 +14,8 @@ TITLE = "Hierarchical decentralized LQR formation control, reproduced"
 
 INTRODUCTION = """Every number here comes from the block diagrams of drake_formation {ours} on Drake {drake}, compiled.
 Errors are in centimetres where the paper prints %. *Published* is printed in the paper, *inferred* follows from what it
-prints, *chosen* is ours where the paper is silent. A cell *agrees* within 20 % of the published value; one that does not
-says why."""
+prints, *chosen* is ours where the paper is silent. A cell *agrees* within 20 % of the published value; one that does
+not says why."""
 
 STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; color: #222; }

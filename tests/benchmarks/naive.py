@@ -44,16 +44,17 @@ class Plant(LeafSystem):
 class Tracking(LeafSystem):
     """u_l."""
 
-    def __init__(self, gain, slot):
+    def __init__(self, gain, slot, inertia):
         super().__init__()
+        assert not np.any(inertia)
         self.gain, self.slot = np.asarray(gain), np.asarray(slot)
         self.DeclareVectorInputPort("state", 4)
-        self.DeclareVectorInputPort("reference", 4)
+        self.DeclareVectorInputPort("reference", 6)
         self.DeclareVectorOutputPort("force", 2, self.calc_force)
         self.DeclareVectorOutputPort("error", 4, self.calc_error)
 
     def error(self, context):
-        reference = self.GetInputPort("reference").Eval(context) + np.concatenate([self.slot, np.zeros(2)])
+        reference = self.GetInputPort("reference").Eval(context)[:4] + np.concatenate([self.slot, np.zeros(2)])
         return self.GetInputPort("state").Eval(context) - reference
 
     def calc_force(self, context, output):

@@ -54,8 +54,7 @@ def faster_aggregation(store: Store) -> Claim:
         evidence=(
             f"the error first falls below 5 % after {first} s for δ = 0, 1, 5 N/m, but stays below 2 % only after "
             f"{last} s: with δ_v = 0 the relative mode m s² + 9 s + 1 + Nδ = 0 always decays at 9/(2m) = 0.1125 1/s. "
-            "It "
-            "holds for the first arrival; for settling it needs δ_v > 0"
+            "It holds for the first arrival; for settling it needs δ_v > 0"
         ),
         source="line, aggregation",
     )
@@ -78,8 +77,7 @@ def any_stiffness(store: Store) -> Claim:
             f"at δ = 1e4 the obstacles disturb the agreement by at most {100 * caused[worst]:.2f} cm ({worst[0]}, "
             f"{worst[1]}); "
             "the condition is a settled hand-off, since the largest error of the whole transport is the residual "
-            "there: "
-            f"{listed}"
+            f"there: {listed}"
         ),
         source="all transports at δ = 1e4",
     )
@@ -135,8 +133,7 @@ def scalable(store: Store) -> Claim:
         verdict=HOLDS if error < 0.2 * local else FAILS,
         evidence=(
             f"at δ = 1e4 the obstacles disturb the agreement of eight robots by {100 * error:.2f} cm; without "
-            "consensus e "
-            f"reaches {100 * local:.1f} cm"
+            f"consensus e reaches {100 * local:.1f} cm"
         ),
         source="octagon, rubber",
     )

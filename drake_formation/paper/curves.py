@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from drake_formation.metrics import length, metrics
 from drake_formation.paper.runs import AGGREGATION_GAINS, GAINS, MATERIALS, TOPOLOGIES, aggregation, topology, transport
 from drake_formation.paper.store import Store
-from drake_formation.scenario import Scenario
 from drake_formation.viz.figures import draw_formation, draw_obstacles, robot_colours, snapshot_times
 
 Array = NDArray[np.float64]
@@ -164,8 +163,8 @@ def consensus_errors(formation: str, store: Store) -> Figure:
 
 def topology_bars(store: Store) -> Figure:
     """Largest consensus error by communication topology and without communication (Fig. 23)."""
-    local = {"local LQR": transport("quadrilateral", "rubber", 0.0)}
-    bars = {name: metrics(store[run]).consensus_error_m for name, run in (local | topologies()).items()}
+    runs = {"local LQR": transport("quadrilateral", "rubber", 0.0)} | {name: topology(name) for name in TOPOLOGIES}
+    bars = {name: metrics(store[run]).consensus_error_m for name, run in runs.items()}
     figure = Figure(figsize=(8, 4), layout="constrained")
     axes = figure.subplots()
     drawn = axes.bar(
@@ -176,11 +175,6 @@ def topology_bars(store: Store) -> Figure:
     axes.set_ylabel("largest ‖e‖ (cm)")
     axes.tick_params("x", labelrotation=20)
     return figure
-
-
-def topologies() -> dict[str, Scenario]:
-    """The runs of Fig. 23 with communication."""
-    return {name: topology(name) for name in TOPOLOGIES}
 
 
 def phase(result: xr.Dataset, number: int) -> xr.Dataset:
@@ -213,7 +207,6 @@ def _panel(label: str, time: str = "time (s)") -> tuple[Figure, Axes]:
     return figure, axes
 
 
-def _finish(*panels: Axes) -> None:
-    for axes in panels:
-        axes.grid(alpha=0.3)
-        axes.legend(fontsize="small", frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+def _finish(axes: Axes) -> None:
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize="small", frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))

@@ -1,7 +1,7 @@
 """Tables 1-6 of the paper: each cell as published, as this project gets it, and the difference with its reason."""
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from drake_formation.metrics import Metrics, metrics
 from drake_formation.paper.published import published
@@ -95,11 +95,7 @@ class Quantity:
                         published=theirs,
                         ours=mine,
                     )
-                    yield cell if cell.agrees else _explained(cell, self.reason(self, material, delta, figures))
-
-
-def _explained(cell: Cell, reason: str) -> Cell:
-    return Cell(**{**cell.__dict__, "reason": reason})
+                    yield cell if cell.agrees else replace(cell, reason=self.reason(self, material, delta, figures))
 
 
 def tracking_reason(_quantity: Quantity, _material: str, delta: float, _figures: Metrics) -> str:
@@ -108,8 +104,7 @@ def tracking_reason(_quantity: Quantity, _material: str, delta: float, _figures:
         return "how far an obstacle pushes depends on ρ0 and η, which are fitted to one other number"
     return (
         "with consensus the formation moves as one body of N masses under the same push, so ε falls with N (here 15 "
-        "cm for "
-        "two robots, 10 cm for four); the published 12.6 and 18 cm rise with N, which no single η gives"
+        "cm for two robots, 10 cm for four); the published 12.6 and 18 cm rise with N, which no single η gives"
     )
 
 
@@ -118,8 +113,7 @@ def consensus_reason(_quantity: Quantity, material: str, delta: float, figures: 
     if delta > 0:
         return (
             f"e is the residual at the hand-off (here {100 * figures.consensus_error_m:.2f} cm), which depends on "
-            "T_agg "
-            "and on the phase in which the virtual springs ring then"
+            "T_agg and on the phase in which the virtual springs ring then"
         )
     if material == "steel":
         return "without consensus the steel holds the distances (Eq. 2); what is left is rotation and the residual"
@@ -137,13 +131,11 @@ def force_reason(quantity: Quantity, material: str, delta: float, figures: Metri
     if cost > (1 + AGREES) * force:
         return (
             f"as printed, force and error contradict each other: the published e of {100 * error:g} cm alone costs "
-            "about "
-            f"δ·N·e = {cost:.0f} N"
+            f"about δ·N·e = {cost:.0f} N"
         )
     return (
         f"the peak is about δ·N·e at the hand-off, so it follows the residual: {100 * figures.consensus_error_m:.2f} "
-        "cm "
-        f"here, {100 * error:g} cm published"
+        f"cm here, {100 * error:g} cm published"
     )
 
 

@@ -109,8 +109,7 @@ def lemmas(_store: Store) -> Claim:
         worst = max(worst, abs(x @ laplacian @ x - potential))
     return Claim(
         claim="Lemmas 1, 3 and 4: a connected graph has one zero eigenvalue, xᵀLx is the Laplacian potential (Eq. 1) "
-        "and "
-        "vanishes in agreement only",
+        "and vanishes in agreement only",
         verdict=HOLDS if worst < 1e-12 and second > 0 else FAILS,
         evidence=(
             f"zero eigenvalues and Eq. 1 to {worst:.0e}; the smallest non-zero eigenvalue of all topologies is "

@@ -1,0 +1,165 @@
+"""The closed loop about the formation at rest, linearized by Drake from the built diagram.
+
+Everything in :mod:`drake_formation.analysis` starts here; no equation of motion is written a second time. What the
+linearization cannot speak of is listed in ``NOT_COVERED``.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydrake.systems.framework import Context, Diagram, InputPortSelection, OutputPortSelection
+from pydrake.systems.primitives import Linearize
+
+from drake_formation.diagram import build_diagram
+from drake_formation.formation import graphs
+from drake_formation.parameters import find_block, robot_name, set_parameters
+from drake_formation.scenario import Scenario, derive, with_overrides
+
+Array = NDArray[np.float64]
+
+STATES = 4
+"""States of a robot: x, y (m) and their rates (m/s), in the world frame."""
+
+NOT_COVERED = (
+    "avoidance: every number is for a formation outside the sensing range of all obstacles",
+    "large displacements: springs are linearized about the formation at rest; a rotated formation has other ones",
+    "saturation: forces are taken as unlimited",
+    "the hand-off: the object is in place",
+)
+"""What a linearization about the formation at rest says nothing about."""
+
+
+@dataclass(frozen=True)
+class LinearFormation:
+    """ẋ = A x + B f about the formation at rest at its goal; x is the deviation, robot after robot.
+
+    The consensus law is linear in its gains, so A is kept in parts: ``A(δ, δ_v) = tracking + springs + δ per_delta +
+    δ_v per_delta_v``.
+
+    Attributes:
+        scenario: what was linearized: in transport, at its goal, without obstacles.
+        tracking: plants with their local controllers alone, shape (4N, 4N).
+        springs: what the object adds, shape (4N, 4N).
+        per_delta: what consensus adds for every N/m of δ, shape (4N, 4N).
+        per_delta_v: what consensus adds for every N s/m of δ_v, shape (4N, 4N).
+        B: accelerations from forces on the robots (N), x and y robot after robot, shape (4N, 2N).
+    """
+
+    scenario: Scenario
+    tracking: Array
+    springs: Array
+    per_delta: Array
+    per_delta_v: Array
+    B: Array
+
+    @property
+    def robots(self) -> int:
+        """Number of robots N."""
+        return len(self.tracking) // STATES
+
+    @property
+    def delta(self) -> float:
+        """The scenario's consensus gain δ (N/m)."""
+        return self.scenario.consensus.delta
+
+    @property
+    def delta_v(self) -> float:
+        """The scenario's velocity consensus gain δ_v (N s/m)."""
+        return self.scenario.consensus.delta_v
+
+    @cached_property
+    def A(self) -> Array:
+        """The closed loop with the scenario's gains, shape (4N, 4N)."""
+        return self.closed_loop(self.delta, self.delta_v)
+
+    @cached_property
+    def laplacian(self) -> Array:
+        """Laplacian of the communication graph, shape (N, N)."""
+        return graphs.laplacian(derive.communication_graph(self.scenario))
+
+    def closed_loop(self, delta: float, delta_v: float) -> Array:
+        """The closed loop with other consensus gains (N/m, N s/m), shape (4N, 4N)."""
+        return self.tracking + self.springs + self.consensus(delta, delta_v)
+
+    def consensus(self, delta: float, delta_v: float) -> Array:
+        """What consensus with some gains (N/m, N s/m) adds to A, shape (4N, 4N)."""
+        result: Array = delta * self.per_delta + delta_v * self.per_delta_v
+        return result
+
+
+def own(matrix: Array) -> Array:
+    """The part of a (4N, 4N) matrix by which every robot acts on itself; the rest is what its neighbours do."""
+    robots = len(matrix) // STATES
+    result: Array = matrix * np.kron(np.eye(robots), np.ones((STATES, STATES)))
+    return result
+
+
+def linearize(scenario: Scenario) -> LinearFormation:
+    """Linearize a scenario's diagram about its formation at rest at the goal.
+
+    Args:
+        scenario: what to analyse; its start, phases, reference and obstacles play no part.
+
+    Raises:
+        ScenarioError: the scenario is wrong.
+    """
+    rest = at_rest(scenario)
+    diagram = build_diagram(rest)
+    context = diagram.CreateDefaultContext()
+
+    def linear(**changes: Any) -> Array:
+        off = {"springs.stiffness": 0.0, "springs.damping": 0.0, "consensus.delta": 0.0, "consensus.delta_v": 0.0}
+        named = {path.replace("__", "."): value for path, value in changes.items()}
+        set_parameters(diagram, context, with_overrides(rest, {**off, **named}))
+        return _state_matrix(diagram, context)
+
+    tracking = linear()
+    return LinearFormation(
+        scenario=rest,
+        tracking=tracking,
+        springs=linear(springs__stiffness=rest.springs.stiffness, springs__damping=rest.springs.damping) - tracking,
+        per_delta=linear(consensus__delta=1.0) - tracking,
+        per_delta_v=linear(consensus__delta_v=1.0) - tracking,
+        B=_force_matrix(diagram, rest),
+    )
+
+
+def at_rest(scenario: Scenario) -> Scenario:
+    """The scenario as it is linearized: in formation at the goal from the start, in transport, without obstacles."""
+    return with_overrides(
+        scenario,
+        {
+            "aggregation.duration": 0.0,
+            "robots.start": {"centre": list(scenario.transport.goal)},
+            "transport.reference": {"kind": "set_point"},
+            "avoidance.obstacles": [],
+            "avoidance.sensing": "in_range",
+        },
+    )
+
+
+def _state_matrix(diagram: Diagram, context: Context) -> Array:
+    linear = Linearize(diagram, context, InputPortSelection.kNoInput, OutputPortSelection.kNoOutput)
+    result: Array = linear.A()
+    return result
+
+
+def _force_matrix(diagram: Diagram, scenario: Scenario) -> Array:
+    """Each plant's own force port, block by block: the robots' forces are wired to their controllers."""
+    robots = derive.robot_count(scenario.formation)
+    whole = diagram.CreateDefaultContext()
+    result = np.zeros((STATES * robots, 2 * robots))
+    for i in range(robots):
+        plant = find_block(diagram, f"{robot_name(i)}/plant")
+        inside = plant.GetMyContextFromRoot(whole)
+        alone = plant.CreateDefaultContext()
+        for k in range(plant.num_input_ports()):
+            port = plant.get_input_port(k)
+            port.FixValue(alone, port.Eval(inside))
+        force, state = plant.GetInputPort("force").get_index(), plant.GetOutputPort("state").get_index()
+        linear = Linearize(plant, alone, force, state)
+        result[STATES * i : STATES * (i + 1), 2 * i : 2 * i + 2] = linear.B()
+    return result

@@ -1,4 +1,4 @@
-"""The command line: ``drake-formation run | validate | graphviz | schema | scenarios``."""
+"""The command line: ``drake-formation run | sweep | validate | graphviz | reproduce | schema | scenarios``."""
 
 import json
 import sys
@@ -48,6 +48,13 @@ class EngineName(StrEnum):
     COMPILED = "compiled"
 
 
+class ExecutorName(StrEnum):
+    """Who carries out the runs of a sweep."""
+
+    SERIAL = "serial"
+    PROCESSES = "processes"
+
+
 def main() -> None:
     """Entry point of the command; turns what a user can do wrong into a message and an exit status."""
     try:
@@ -87,6 +94,45 @@ def run(
         _stop(str(error), WRONG_INPUT)
     console.print(_summary(resolved, figures.to_dict()))
     console.print(f"Results in {folder}, pictures in {folder / 'figures'}.", soft_wrap=True)
+
+
+@app.command()
+def sweep(
+    source: Annotated[str, typer.Argument(metavar="SWEEP", help="A sweep file, or the name of a shipped one.")],
+    out: Annotated[Path, typer.Option(help="Folder for the runs, the dataset and its figures.")],
+    engine: Annotated[
+        EngineName, typer.Option(help="The block diagram itself, or code compiled from it.")
+    ] = EngineName.COMPILED,
+    executor: Annotated[ExecutorName, typer.Option(help="This process, or several.")] = ExecutorName.PROCESSES,
+    workers: Annotated[int | None, typer.Option(min=1, help="Number of processes; default: of processors.")] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Let the workers of this Dask scheduler run the sweep.")
+    ] = None,
+    retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Run again what failed before.")] = False,
+) -> None:
+    """Run a scenario over grids, lists and random samples of its fields; goes on where it was stopped."""
+    from drake_formation.sweep import SweepError, SweepStoppedError, load_sweep, run_sweep
+    from drake_formation.sweep.terminal import closing, kept_message, progress_bar, summary
+
+    loaded = load_sweep(source)
+    try:
+        with progress_bar(loaded.name, Console(stderr=True)) as progress:
+            results = run_sweep(
+                loaded, out, engine=engine.value, executor=executor.value, workers=workers, scheduler=scheduler,
+                retry_failed=retry_failed, progress=progress,
+            )  # fmt: skip
+    except SweepError as error:
+        _stop(str(error), WRONG_INPUT)
+    except SweepStoppedError as error:
+        _stop(f"{error}\n{kept_message(out)}", FAILED_RUN)
+    except KeyboardInterrupt:
+        _stop(f"interrupted\n{kept_message(out)}", INTERRUPTED)
+    with results:
+        message, failed = closing(results, out)
+        console.print(summary(results))
+    console.print(message, soft_wrap=True)
+    if failed:
+        raise SystemExit(FAILED_RUN)
 
 
 @app.command()

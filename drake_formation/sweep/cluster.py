@@ -1,0 +1,71 @@
+"""A Dask cluster as executor, by the address of its scheduler."""
+
+from concurrent.futures import CancelledError, Future
+from types import TracebackType
+from typing import Any, Self
+
+from drake_formation.sweep.errors import SweepError, SweepStoppedError
+from drake_formation.sweep.work import Chunk, Report, run_chunk
+
+PATIENCE = 30.0
+"""How long to wait for a scheduler, and then for its first worker (s)."""
+
+
+class Cluster:
+    """The workers of a Dask scheduler.
+
+    They need this package in the same versions, and, for results that are the same to the last bit, processors of the
+    same make. Workers come and go as they like: Dask gives the chunk of a lost worker to another.
+
+    Args:
+        address: of the scheduler, such as ``tcp://10.0.0.1:8786``.
+    """
+
+    def __init__(self, address: str) -> None:
+        try:
+            from distributed import Client
+            from distributed.scheduler import KilledWorker
+        except ImportError as error:
+            raise SweepError(
+                "a cluster needs Dask, which is not installed: pip install 'drake-formation[dask]'"
+            ) from error
+        self.deaths: tuple[type[BaseException], ...] = (KilledWorker,)
+        self._address = address
+        self._client_type: Any = Client
+
+    @property
+    def slots(self) -> int:
+        """Two chunks a worker: one to run, and one to go on with."""
+        return 2 * max(1, len(self._client.scheduler_info(n_workers=-1)["workers"]))
+
+    def submit(self, chunk: Chunk) -> "Future[Report]":
+        """Hand out a chunk."""
+        future: Future[Report] = self._executor.submit(run_chunk, chunk)
+        return future
+
+    def __enter__(self) -> Self:
+        """Connect.
+
+        Raises:
+            SweepError: there is no scheduler, or it has no workers.
+        """
+        try:
+            self._client = self._client_type(self._address, timeout=PATIENCE, set_as_default=False)
+        except (OSError, ValueError) as error:
+            raise SweepError(f"no Dask scheduler at {self._address}: {error}") from error
+        try:
+            self._client.wait_for_workers(1, timeout=PATIENCE)
+        except TimeoutError as error:
+            self._client.close()
+            raise SweepError(f"the Dask scheduler at {self._address} has no workers") from error
+        # Chunks are never equal, so there is no result to be found again by a hash of its arguments.
+        self._executor = self._client.get_executor(pure=False)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._executor.shutdown(wait=False)
+        self._client.close()
+        if kind is CancelledError:
+            raise SweepStoppedError(f"the connection to the Dask scheduler at {self._address} was lost") from error

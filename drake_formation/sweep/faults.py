@@ -1,0 +1,89 @@
+"""From what pydantic finds wrong with a sweep file to faults as scenarios have them."""
+
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from drake_formation.scenario.errors import Fault, Path, ScenarioError, nearest, shown
+from drake_formation.scenario.source import Document
+from drake_formation.scenario.values import Section
+from drake_formation.sweep.schema import SECTIONS, SweepFile
+
+_MESSAGES = {
+    "missing": "missing",
+    "extra_forbidden": "unknown key",
+    "finite_number": "not finite",
+    "greater_than": "out of range",
+    "greater_than_equal": "out of range",
+    "literal_error": "unknown name",
+    "union_tag_invalid": "unknown name",
+    "string_pattern_mismatch": "not a valid name",
+    "too_short": "too few entries",
+    "too_long": "too many entries",
+}
+
+
+def parsed(document: Document) -> SweepFile:
+    """The model of a document.
+
+    Raises:
+        ScenarioError: with all faults of single fields.
+    """
+    try:
+        return SweepFile.model_validate(document.data)
+    except ValidationError as error:
+        raise error_of(document, error) from error
+
+
+def error_of(document: Document, error: ValidationError) -> ScenarioError:
+    """The same faults in this project's words, each with its origin."""
+    return document.attributed(_fault(document.data, detail) for detail in error.errors(include_url=False))
+
+
+def _fault(data: Any, detail: ErrorDetails) -> Fault:
+    kind, value = detail["type"], detail["input"]
+    section = _section(detail["loc"])
+    path = _path(data, detail["loc"], named=kind in ("missing", "extra_forbidden"))
+    message = _MESSAGES.get(kind, "not allowed")
+    if kind == "extra_forbidden":
+        keys = section.model_fields
+        return Fault(path, message, allowed=", ".join(keys), suggestion=nearest(path[-1], keys))
+    field = section.model_fields.get(str(path[-1])) if path else None
+    description = (field and field.description) or ""
+    if kind == "missing":
+        return Fault(path, message, allowed=description)
+    if kind == "union_tag_invalid":
+        tags = detail["ctx"]["expected_tags"].replace("'", "")
+        return Fault((*path, "kind"), message, shown(detail["ctx"]["tag"]), tags)
+    allowed = " — ".join(filter(None, [_words(detail), description]))
+    return Fault(path, message, shown(value), allowed)
+
+
+def _words(detail: ErrorDetails) -> str:
+    """What pydantic expects, without its opening."""
+    return detail["msg"].removeprefix("Input should be ").removeprefix("Value should be ").replace("'", "")
+
+
+def _section(loc: Path) -> type[Section]:
+    """The section around a location."""
+    names = (part for part in reversed(loc[:-1]) if part in SECTIONS)
+    return SECTIONS[name] if (name := next(names, None)) else SweepFile
+
+
+def _path(data: Any, loc: Path, named: bool) -> Path:
+    """A location without the tags of unions, which a user did not write.
+
+    Args:
+        data: the document's.
+        loc: pydantic's location.
+        named: whether its last part is a key that stands, or should stand, in the document.
+    """
+    path: Path = ()
+    for part in loc[:-1] if named else loc:
+        if part == "[key]":
+            break
+        inside: Any = data
+        if (isinstance(data, dict) and part in data) or (isinstance(data, list) and isinstance(part, int)):
+            path, data = (*path, part), inside[part]
+    return (*path, loc[-1]) if named else path

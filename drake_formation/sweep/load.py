@@ -1,0 +1,158 @@
+"""Loading sweeps: the shipped ones by name, others from files or mappings; what is wrong is found before any run."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from drake_formation.scenario import Fault, ScenarioError, shipped_scenarios
+from drake_formation.scenario.errors import dotted, nearest, shown
+from drake_formation.scenario.overrides import apply, plain
+from drake_formation.scenario.source import Document, read
+from drake_formation.scenario.validate import validate
+from drake_formation.sweep.axes import Axis, resolve
+from drake_formation.sweep.coordinates import name_faults
+from drake_formation.sweep.definition import Sweep, probes
+from drake_formation.sweep.faults import parsed
+from drake_formation.sweep.schema import SweepFile
+
+MOST_POINTS = 10_000_000
+"""A grid of more points is a slip, not a plan."""
+
+
+def load_sweep(source: str | Path | Mapping[str, Any]) -> Sweep:
+    """Load a sweep.
+
+    Every value that the file writes down, and the ends of every interval, are checked here, each with the first
+    values of the other axes. What only a certain combination makes wrong (a graph that names a fifth robot where there
+    are four), or a random draw far out, is recorded as that run's failure when its turn comes.
+
+    Args:
+        source: a file, the name of a shipped sweep such as ``gains``, or what would stand in a file as a mapping;
+            ``scenario`` may then be a Scenario.
+
+    Returns:
+        The sweep.
+
+    Raises:
+        ScenarioError: with all faults found, each with file and line.
+    """
+    if isinstance(source, Mapping):
+        document, folder, text = Document("the sweep", plain(source)), Path(), ""
+    else:
+        path = _file(source)
+        document, folder = read(path), path.parent
+        text = path.read_text(encoding="utf-8")
+    model = parsed(document)
+    axes = _axes(document, model)
+    base = _base(document, model, folder)
+    sweep = Sweep(model.name, model.description, text, base, axes, model.trajectories)
+    if len(sweep) > MOST_POINTS:
+        raise document.attributed([Fault(("axes",), f"{len(sweep)} points", allowed=f"at most {MOST_POINTS}")])
+    _check(sweep, document)
+    return sweep
+
+
+def shipped_sweeps() -> dict[str, Path]:
+    """Files of the sweeps that come with the package, by name."""
+    folder = next(iter(shipped_scenarios().values())).parent / "sweeps"
+    return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
+
+
+def _file(source: str | Path) -> Path:
+    shipped = shipped_sweeps()
+    path = Path(source)
+    try:
+        exists, folder = path.exists(), path.is_dir()
+    except (OSError, ValueError) as error:
+        raise ScenarioError([Fault((), f"not a usable path: {error}", origin=str(source))]) from error
+    if exists and not folder:
+        return path
+    if str(source) in shipped:
+        return shipped[str(source)]
+    message = "a folder, not a file" if folder else "no such file or shipped sweep"
+    allowed = f"a file, {', '.join(shipped)}"
+    raise ScenarioError([Fault((), message, "", allowed, nearest(path.stem, shipped), origin=str(source))])
+
+
+def _axes(document: Document, model: SweepFile) -> tuple[Axis, ...]:
+    resolved = [resolve(axis, ("axes", k)) for k, axis in enumerate(model.axes)]
+    faults = [fault for _, own in resolved for fault in own]
+    axes = tuple(axis for axis, _ in resolved if axis)
+    if faults := faults or [*_overlaps(axes), *name_faults(axes)]:
+        raise document.attributed(faults)
+    return axes
+
+
+def _overlaps(axes: tuple[Axis, ...]) -> Iterator[Fault]:
+    """A field that two columns set, or set one within the other: which came last would decide."""
+    seen: list[tuple[str, ...]] = []
+    for axis in axes:
+        for path in axis.columns:
+            keys = tuple(path.split("."))
+            for other in seen:
+                if keys[: len(other)] == other or other[: len(keys)] == keys:
+                    yield Fault(axis.place, f"{path} and {dotted(other)} both set the same field")
+            seen.append(keys)
+
+
+def _base(document: Document, model: SweepFile, folder: Path) -> Document:
+    """The base scenario with the sweep's own values set in it, said to stand where the sweep file says them."""
+    origins = {path: document.origin(("set", path)) for path in model.set}
+    try:
+        base = apply(_scenario_document(document, model.scenario, folder), model.set)
+    except ScenarioError as error:
+        raise ScenarioError(_placed(error.faults, origins)) from None
+    names = {f"overrides[{path!r}]": origin for path, origin in origins.items()}
+    return replace(base, origins={place: names.get(origin, origin) for place, origin in base.origins.items()})
+
+
+def _scenario_document(document: Document, scenario: str | dict[str, Any], folder: Path) -> Document:
+    if isinstance(scenario, dict):
+        length = len(place := ("scenario",))
+        origins = {path[length:]: origin for path, origin in document.origins.items() if path[:length] == place}
+        return Document(document.name, scenario, origins)
+    shipped = shipped_scenarios()
+    path = folder / scenario
+    if path.is_file():
+        return read(path)
+    if scenario in shipped:
+        return read(shipped[scenario])
+    allowed = f"a file (relative to {folder.resolve()}), {', '.join(shipped)}"
+    fault = Fault(
+        ("scenario",), "no such file or shipped scenario", shown(scenario), allowed, nearest(scenario, shipped)
+    )
+    raise document.attributed([fault])
+
+
+def _check(sweep: Sweep, document: Document) -> None:
+    """Refuse wrong values, each once; and wrong combinations if among the points checked there are no others."""
+    wrong: dict[str, Fault] = {}
+    combinations: dict[str, Fault] = {}
+    sound = False
+    for index in probes(sweep):
+        origins = {
+            path: document.origin(axis.origin(position, path))
+            for axis, position in zip(sweep.axes, sweep.positions(index), strict=True)
+            for path in axis.overrides(position)
+        }
+        try:
+            point = apply(sweep.base, sweep.overrides(index))
+        except ScenarioError as error:
+            wrong |= {str(fault): fault for fault in _placed(error.faults, origins)}
+            continue
+        try:
+            validate(point)
+            sound = True
+        except ScenarioError as error:
+            # Pydantic is the cause where a single value is wrong; nothing is where the combination is.
+            found = combinations if error.__cause__ is None else wrong
+            found |= {str(fault): fault for fault in _placed(error.faults, origins)}
+    if wrong or not sound:
+        raise ScenarioError((wrong or combinations).values())
+
+
+def _placed(faults: Iterable[Fault], origins: Mapping[str, str]) -> list[Fault]:
+    """Faults of overrides, said to stand where the sweep file says their values."""
+    places = {f"overrides[{path!r}]": origin for path, origin in origins.items()}
+    return [replace(fault, origin=places.get(fault.origin, fault.origin)) for fault in faults]

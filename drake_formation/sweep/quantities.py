@@ -1,0 +1,84 @@
+"""Names and units of what a sweep varies and measures."""
+
+import re
+import types
+from dataclasses import fields
+from typing import Annotated, Any, Union, get_args, get_origin
+
+from pydantic import BaseModel
+
+from drake_formation.metrics import Metrics
+from drake_formation.scenario import Scenario
+
+LONG_NAMES = {
+    "tracking_error_m": "largest tracking error",
+    "consensus_error_m": "largest consensus error",
+    "peak_force_n": "peak control force",
+    "min_clearance_m": "least distance to an obstacle",
+    "max_spring_strain": "largest spring strain",
+    "settling_time_s": "settled within 2 % after",
+}
+"""What to call each metric; :class:`drake_formation.Metrics` defines them."""
+_UNITS = {"m": "m", "n": "N", "s": "s"}
+_UNIT = re.compile(r"\((1|deg|kg|m|m/s|N|N/m|N s/m|N m²|s|1/s|Hz|rad|rad/s|V|A|W|J)\)")
+
+
+def metric_attributes(name: str) -> dict[str, str]:
+    """Attributes of a metric's variable: units and long name."""
+    return {
+        "units": _UNITS.get(name.rpartition("_")[2], "1"),
+        "long_name": LONG_NAMES.get(name, name.replace("_", " ")),
+    }
+
+
+def metric_names() -> list[str]:
+    """All metrics, in their order."""
+    return [field.name for field in fields(Metrics)]
+
+
+def field_attributes(path: str) -> dict[str, str]:
+    """Attributes of a swept field's coordinate: its path, and name and unit as the scenario's schema says them."""
+    attributes = {"path": path}
+    text = _description(Scenario, path.split("."))
+    if unit := _UNIT.search(text):
+        attributes["units"] = unit[1]
+    if name := re.split(r" \(|[;:,]", text)[0].strip():
+        symbol_alone = " " not in name
+        attributes["long_name"] = f"{_key(path)} {name}" if symbol_alone else name
+    return attributes
+
+
+def _key(path: str) -> str:
+    """The last key of a path that is not a position in a list."""
+    return next((key for key in reversed(path.split(".")) if not key.isdecimal()), path)
+
+
+def _description(annotation: Any, keys: list[str]) -> str:
+    """The description of the innermost field that a path enters; empty if it leads nowhere."""
+    for section in _sections(annotation):
+        if keys and (field := section.model_fields.get(keys[0])):
+            return _description(field.annotation, keys[1:]) or field.description or ""
+    if keys and keys[0].isdecimal():
+        return next(filter(None, (_description(item, keys[1:]) for item in _items(annotation))), "")
+    return ""
+
+
+def _sections(annotation: Any) -> list[type[BaseModel]]:
+    """Sections that a type may be."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [section for branch in _branches(annotation) for section in _sections(branch)]
+
+
+def _items(annotation: Any) -> list[Any]:
+    """Types that the entries of a type may be."""
+    if get_origin(annotation) is tuple:
+        return [item for item in get_args(annotation) if item is not Ellipsis]
+    return [item for branch in _branches(annotation) for item in _items(branch)]
+
+
+def _branches(annotation: Any) -> tuple[Any, ...]:
+    origin = get_origin(annotation)
+    if origin is Annotated:
+        return get_args(annotation)[:1]
+    return get_args(annotation) if origin in (Union, types.UnionType) else ()

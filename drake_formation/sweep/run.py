@@ -1,0 +1,118 @@
+"""Running a sweep: what is missing is run and kept, then all of it becomes one dataset."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from drake_formation.simulation.engines import ENGINES
+from drake_formation.sweep.dataset import write_dataset, write_failures
+from drake_formation.sweep.definition import Sweep
+from drake_formation.sweep.drive import drive
+from drake_formation.sweep.errors import SweepError
+from drake_formation.sweep.executors import choose
+from drake_formation.sweep.load import load_sweep
+from drake_formation.sweep.store import Store
+from drake_formation.sweep.work import Outcome, Task, versions
+
+DATASET, FIGURES = "sweep.nc", "figures"
+
+
+@dataclass(frozen=True)
+class Tally:
+    """How far a sweep is.
+
+    Attributes:
+        total: number of points.
+        finished: points that are on disk, failed ones included.
+        failed: points whose run failed.
+        resumed: points that were on disk before this call.
+    """
+
+    total: int
+    finished: int
+    failed: int
+    resumed: int
+
+
+Progress = Callable[[Tally], None]
+"""Called before the first run, and whenever further runs are on disk."""
+
+
+def run_sweep(
+    sweep: Sweep | str | Path | Mapping[str, Any],
+    out: str | Path,
+    *,
+    engine: str = "compiled",
+    executor: str = "processes",
+    workers: int | None = None,
+    scheduler: str | None = None,
+    retry_failed: bool = False,
+    figures: bool = True,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Run a sweep, or what is missing of it.
+
+    Every finished run is on disk, in ``runs.sqlite``, before it counts: a sweep that was interrupted, even killed,
+    goes on where it was when it is called again. Results depend neither on the executor nor on its workers.
+
+    Args:
+        sweep: a sweep, or what :func:`load_sweep` takes.
+        out: folder for the runs, ``sweep.nc`` and ``figures``.
+        engine: as for :func:`drake_formation.simulate`.
+        executor: ``processes`` on this machine, or ``serial``: this process.
+        workers: number of processes; as many as processors if not given.
+        scheduler: address of a Dask scheduler, whose workers then run the sweep.
+        retry_failed: run again what failed before.
+        figures: whether to draw figures, where one or two axes are swept.
+        progress: called as runs finish.
+
+    Returns:
+        The dataset of ``sweep.nc``, opened but not read; see :func:`drake_formation.sweep.dataset.write_dataset`.
+
+    Raises:
+        ScenarioError: the sweep is wrong.
+        SweepError: it cannot be begun so, or there.
+        SweepStoppedError: it cannot go on; what was finished is kept.
+    """
+    if not isinstance(sweep, Sweep):
+        sweep = load_sweep(sweep)
+    if engine not in ENGINES:
+        raise SweepError(f"no engine {engine!r}; there are {', '.join(ENGINES)}")
+    workforce = choose(executor, workers, scheduler)
+    folder = Path(out)
+    identity = {"sweep": sweep.fingerprint(), "engine": engine} | versions()
+    with Store(folder, identity) as store:
+        finished, failed = store.kept(len(sweep))
+        missing = np.flatnonzero(~finished | failed if retry_failed else ~finished)
+        resumed = len(sweep) - len(missing)
+
+        def keep(outcomes: Sequence[Outcome]) -> None:
+            store.add(outcomes)
+            for outcome in outcomes:
+                finished[outcome.index], failed[outcome.index] = True, outcome.error is not None
+            tell()
+
+        def tell() -> None:
+            if progress:
+                progress(Tally(len(sweep), int(finished.sum()), int(failed.sum()), resumed))
+
+        if retry_failed:
+            finished &= ~failed
+            failed[:] = False
+        tell()
+        if len(missing):
+            task = Task(sweep.base.data, engine, sweep.trajectories, versions())
+            with workforce:
+                drive(sweep, task, missing, workforce, keep)
+        write_dataset(folder / DATASET, sweep, store, identity)
+        write_failures(folder, sweep, store)
+        dataset = xr.open_dataset(folder / DATASET, engine="netcdf4")
+        if figures:
+            from drake_formation.viz.sweep_figures import write_sweep_figures
+
+            write_sweep_figures(dataset, folder / FIGURES)
+    return dataset

@@ -1,0 +1,84 @@
+"""A sweep in the terminal: a bar that moves as runs are on disk, and in the end what came of it."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import xarray as xr
+from rich.console import Console
+from rich.progress import BarColumn, Progress, ProgressColumn, Task, TaskID, TextColumn
+from rich.table import Table
+from rich.text import Text
+
+from drake_formation.sweep.dataset import DONE, FAILED, FAILURES
+from drake_formation.sweep.quantities import metric_names
+from drake_formation.sweep.run import DATASET, FIGURES, Tally
+from drake_formation.sweep.run import Progress as Report
+
+
+@contextmanager
+def progress_bar(name: str, console: Console) -> Iterator[Report]:
+    """A progress bar; gives what to call as runs finish."""
+    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed} / {task.total} runs"))
+    with Progress(*columns, _Rate(), console=console, transient=True, speed_estimate_period=120) as bar:
+        task: TaskID | None = None
+
+        def report(tally: Tally) -> None:
+            nonlocal task
+            if task is None:  # what was finished before is where the bar begins, and no part of the rate
+                task = bar.add_task(name, total=tally.total, completed=tally.finished)
+            failed = f", {tally.failed} failed" if tally.failed else ""
+            bar.update(task, completed=tally.finished, description=f"{name}{failed}")
+
+        yield report
+
+
+class _Rate(ProgressColumn):
+    """Runs a second over the last two minutes, and the time left at that rate."""
+
+    def render(self, task: Task) -> Text:
+        if not task.speed or task.remaining is None:
+            return Text("")
+        return Text(f"{task.speed:.3g} runs/s, {duration(task.remaining / task.speed)} left")
+
+
+def duration(seconds: float) -> str:
+    """A duration as one would say it: ``42 s``, ``3 min 5 s``, ``2 h 7 min``."""
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60} s"
+    return f"{whole // 3600} h {whole % 3600 // 60} min"
+
+
+def summary(dataset: xr.Dataset) -> Table:
+    """Least, middle and largest value of each metric over all runs."""
+    table = Table("metric", "least", "median", "largest", "unit", title=f"{dataset.attrs['title']}, {_sizes(dataset)}")
+    for name in metric_names():
+        if name not in dataset:
+            continue
+        values = dataset[name]
+        numbers = [values.min(), values.median(), values.max()]
+        table.add_row(values.attrs["long_name"], *(f"{float(x):.4g}" for x in numbers), values.attrs["units"])
+    return table
+
+
+def closing(dataset: xr.Dataset, folder: Path) -> tuple[str, int]:
+    """What to say at the end, and how many runs failed."""
+    failed = int((dataset["status"] == FAILED).sum())
+    done = int((dataset["status"] == DONE).sum())
+    pictures = f", pictures in {folder / FIGURES}" if any((folder / FIGURES).glob("*.png")) else ""
+    text = f"{done} runs in {folder / DATASET}{pictures}."
+    if failed:
+        text += f"\n{failed} runs failed: why is in {folder / FAILURES}. --retry-failed runs them again."
+    return text, failed
+
+
+def kept_message(folder: Path) -> str:
+    """What to say of a sweep that was stopped."""
+    return f"Finished runs are kept in {folder}; the same command goes on from there."
+
+
+def _sizes(dataset: xr.Dataset) -> str:
+    return " × ".join(f"{size} {name}" for name, size in dataset["status"].sizes.items())

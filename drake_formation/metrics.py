@@ -1,10 +1,14 @@
 """The figures by which a run is judged, each over the transport phase."""
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
 
 SETTLED = 0.02
 """A robot has settled when it stays within this share of the distance to the goal."""
@@ -45,35 +49,51 @@ def metrics(result: xr.Dataset) -> Metrics:
     Raises:
         ValueError: the result ends before the transport begins.
     """
-    transport = result.isel(time=result["phase"].values == 1)
-    if not transport.sizes["time"]:
+    return measure({str(name): variable.values for name, variable in result.variables.items()})
+
+
+def measure(series: Mapping[str, Array]) -> Metrics:
+    """Measure a run that is not labelled.
+
+    Args:
+        series: variables of a labelled result as arrays, as :meth:`PreparedRun.run` gives them.
+
+    Raises:
+        ValueError: the run ends before the transport begins.
+    """
+    transport = series["phase"] == 1
+    if not transport.any():
         raise ValueError("the result has no transport phase to measure")
-    strain = abs(transport["spring_length"] / transport["rest_length"] - 1)
+    clearance, strain = series["clearance"][transport], series["spring_length"][transport] / series["rest_length"] - 1
     return Metrics(
-        tracking_error_m=[float(x) for x in length(transport["deviation"]).max("time")],
-        consensus_error_m=float(length(transport["consensus_error"]).max()),
-        peak_force_n=float(length(transport["control_force"]).max()),
-        min_clearance_m=float(transport["clearance"].min()) if transport.sizes["obstacle"] else None,
-        max_spring_strain=float(strain.max()) if transport.sizes["spring"] else None,
-        settling_time_s=settling_time(transport),
+        tracking_error_m=[float(x) for x in _length(series["deviation"][transport]).max(axis=0)],
+        consensus_error_m=float(_length(series["consensus_error"][transport]).max()),
+        peak_force_n=float(_length(series["control_force"][transport]).max()),
+        min_clearance_m=float(clearance.min()) if clearance.size else None,
+        max_spring_strain=float(abs(strain).max()) if strain.size else None,
+        settling_time_s=_settling_time(series, transport),
     )
 
 
 def length(vectors: xr.DataArray) -> xr.DataArray:
     """Euclidean length over the axes, units kept."""
-    with np.errstate(over="ignore"):  # a run that diverged may end in numbers whose squares overflow
-        lengths: xr.DataArray = xr.apply_ufunc(
-            np.linalg.norm, vectors, input_core_dims=[["axis"]], kwargs={"axis": -1}, keep_attrs=True
-        )
+    lengths: xr.DataArray = xr.apply_ufunc(_length, vectors, input_core_dims=[["axis"]], keep_attrs=True)
     return lengths
 
 
-def settling_time(transport: xr.Dataset) -> float | None:
-    """Time from the start of a transport until every robot stays near its slot at the goal (s), or None."""
-    travelled = float(length(transport["goal"] - transport["aggregation_centre"]))
-    distance = length(transport["position"] - transport["slot"] - transport["goal"]).max("robot").values
-    outside = np.flatnonzero(distance > SETTLED * travelled)
-    time = transport["time"].values
+def _length(vectors: Array) -> Array:
+    """Euclidean length over the last axis, x and y."""
+    with np.errstate(over="ignore"):  # a run that diverged may end in numbers whose squares overflow
+        lengths: Array = np.sqrt(vectors[..., 0] ** 2 + vectors[..., 1] ** 2)
+    return lengths
+
+
+def _settling_time(series: Mapping[str, Array], transport: NDArray[np.bool_]) -> float | None:
+    """Time from the start of the transport until every robot stays near its slot at the goal (s), or None."""
+    travelled = float(_length(series["goal"] - series["aggregation_centre"]))
+    goals = series["slot"] + series["goal"]
+    outside = np.flatnonzero(_length(series["position"][transport] - goals).max(axis=1) > SETTLED * travelled)
+    time = series["time"][transport]
     if not len(outside):
         return 0.0
     if outside[-1] == len(time) - 1:

@@ -75,6 +75,11 @@ def set_parameters(diagram: Diagram, context: Context, scenario: Scenario) -> No
             "graphs, spring law, sensing, number of obstacles, pieces of the reference and time of the hand-off must "
             "be alike, or the diagram built anew"
         )
+    write_parameters(diagram, context, scenario)
+
+
+def write_parameters(diagram: Diagram, context: Context, scenario: Scenario) -> None:
+    """Write a sound scenario's numbers into a Context of a diagram that is known to have its structure."""
     for path, values in block_parameters(scenario).items():
         block_context = find_block(diagram, path).GetMyMutableContextFromRoot(context)
         for index, value in enumerate(values):

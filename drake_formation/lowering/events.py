@@ -57,6 +57,8 @@ class Updates:
 
     def carry_out(self, context: Context) -> None:
         """Let Drake carry out the updates that are due at the Context's time."""
+        if not self._timings:
+            return
         simulator = Simulator(self._diagram, context)
         simulator.Initialize()
         simulator.AdvancePendingEvents()

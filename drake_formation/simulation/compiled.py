@@ -14,12 +14,26 @@ from drake_formation.simulation.recorder import RECORDED, NonFiniteStateError
 Array = NDArray[np.float64]
 
 
-def start(scenario: Scenario, diagram: Diagram) -> Start:
+def start(diagram: Diagram) -> Start:
     """Compile a diagram; the result starts runs of it.
 
     Raises:
-        ScenarioError: the simulator's settings ask for what is not compiled.
         LoweringError: a block cannot be compiled.
+    """
+    lowered = lower(diagram)
+
+    def run(scenario: Scenario, context: Context, progress: Progress | None) -> CompiledRun:
+        require_compiled_settings(scenario)
+        return CompiledRun(scenario, lowered, context, progress)
+
+    return run
+
+
+def require_compiled_settings(scenario: Scenario) -> None:
+    """Refuse simulator settings that compiled runs do not have.
+
+    Raises:
+        ScenarioError: with what is allowed.
     """
     settings, faults = scenario.simulator, []
     if settings.integration_scheme != "runge_kutta5":
@@ -30,8 +44,6 @@ def start(scenario: Scenario, diagram: Diagram) -> Start:
         faults.append(Fault(("simulator", "target_realtime_rate"), "a compiled run keeps no clock", rate, "0"))
     if faults:
         raise ScenarioError(faults)
-    lowered = lower(diagram)
-    return lambda context, progress: CompiledRun(scenario, lowered, context, progress)
 
 
 class CompiledRun:

@@ -38,28 +38,27 @@ class Engine(Protocol):
         """Carry out the updates due now, and record what that changes."""
 
 
-Start = Callable[[Context, Progress | None], Engine]
-"""Makes an engine that runs from a Context; called with the simulated time after every step."""
+Start = Callable[[Scenario, Context, Progress | None], Engine]
+"""Makes an engine that runs a scenario from a Context; called with the simulated time after every step."""
 
 
-def blocks(scenario: Scenario, diagram: Diagram) -> Start:
+def blocks(diagram: Diagram) -> Start:
     """The diagram itself, on Drake's Simulator."""
-    return lambda context, progress: _Blocks(scenario, diagram, context, progress)
+    return lambda scenario, context, progress: _Blocks(scenario, diagram, context, progress)
 
 
-def compiled(scenario: Scenario, diagram: Diagram) -> Start:
-    """The diagram compiled; see :mod:`drake_formation.lowering`.
+def compiled(diagram: Diagram) -> Start:
+    """The diagram compiled; see :mod:`drake_formation.lowering`. It starts scenarios with ``runge_kutta5`` only.
 
     Raises:
-        ScenarioError: the simulator's settings ask for what is not compiled.
         LoweringError: a block cannot be compiled.
     """
     from drake_formation.simulation.compiled import start  # building diagrams need not pay for the compiler
 
-    return start(scenario, diagram)
+    return start(diagram)
 
 
-ENGINES: dict[str, Callable[[Scenario, Diagram], Start]] = {"blocks": blocks, "compiled": compiled}
+ENGINES: dict[str, Callable[[Diagram], Start]] = {"blocks": blocks, "compiled": compiled}
 
 
 class _Blocks:

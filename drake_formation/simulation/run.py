@@ -4,13 +4,15 @@ from collections.abc import Callable
 
 import numpy as np
 import xarray as xr
+from pydrake.systems.framework import Context
 
 from drake_formation.diagram import build_diagram
-from drake_formation.parameters import set_parameters
+from drake_formation.parameters import set_parameters, structure, write_parameters
 from drake_formation.scenario import Scenario, derive
 from drake_formation.simulation.engines import ENGINES, Engine
-from drake_formation.simulation.recorder import NonFiniteStateError
+from drake_formation.simulation.recorder import NonFiniteStateError, Recording
 from drake_formation.simulation.result import labelled_result
+from drake_formation.simulation.series import Series, time_series
 
 Progress = Callable[[float], None]
 """Called with how much simulated time is done, from 0 to :func:`simulated_duration` (s)."""
@@ -53,34 +55,75 @@ def simulate(scenario: Scenario, *, engine: str = "blocks", progress: Progress |
         LoweringError: a block of the diagram cannot be compiled.
         SimulationError: the run diverged or the integrator gave up; it carries what was recorded.
     """
-    if engine not in ENGINES:
-        raise ValueError(f"no engine {engine!r}; there are {', '.join(ENGINES)}")
-    diagram = build_diagram(scenario)
-    start = ENGINES[engine](scenario, diagram)
-    begin, hand_off, end = scenario.simulator.start_time, derive.hand_off_time(scenario), derive.end_time(scenario)
+    return labelled_result(scenario, PreparedRun(scenario, engine=engine).run(scenario, progress=progress))
 
-    run = start(diagram.CreateDefaultContext(), progress and (lambda time: progress(time - begin)))
-    try:
-        run.advance(hand_off)
-        # Carry out the hand-off now, so that the first sample of the transport has its forces.
-        run.carry_out_updates()
-        at_hand_off = run.context.Clone()
-        run.advance(end)
-    except _FAILURES as failure:
-        partial = labelled_result(scenario, run.recording, nominal=None)
-        raise _simulation_error(scenario, run, partial, failure) from failure
-    if not felt_obstacles(scenario):
-        return labelled_result(scenario, run.recording, nominal=run.recording)
-    _require_clear(labelled_result(scenario, run.recording, nominal=None))
 
-    set_parameters(diagram, at_hand_off, without_obstacles(scenario))
-    nominal = start(at_hand_off, progress and (lambda time: progress(end - begin + time - hand_off)))
-    try:
-        nominal.advance(end)
-    except _FAILURES as failure:
-        partial = labelled_result(scenario, run.recording, nominal.recording)
-        raise _simulation_error(scenario, nominal, partial, failure) from failure
-    return labelled_result(scenario, run.recording, nominal.recording)
+class PreparedRun:
+    """A diagram, built and made ready once, that runs every scenario of its structure.
+
+    A run depends on its scenario alone, not on what ran before.
+
+    Args:
+        scenario: gives the structure; see :func:`drake_formation.parameters.structure`.
+        engine: as for :func:`simulate`.
+
+    Raises:
+        ValueError, ScenarioError, LoweringError: as for :func:`simulate`.
+    """
+
+    def __init__(self, scenario: Scenario, *, engine: str = "blocks") -> None:
+        if engine not in ENGINES:
+            raise ValueError(f"no engine {engine!r}; there are {', '.join(ENGINES)}")
+        self.diagram = build_diagram(scenario)
+        self.structure = structure(scenario)
+        self._start = ENGINES[engine](self.diagram)
+
+    def run(self, scenario: Scenario, *, progress: Progress | None = None) -> Series:
+        """Run a scenario of the same structure.
+
+        Args:
+            scenario: what to run.
+            progress: called as the simulated time goes on.
+
+        Returns:
+            The variables of the labelled result as plain arrays, which :func:`drake_formation.metrics.measure` takes.
+
+        Raises:
+            ScenarioError, SimulationError: as for :func:`simulate`.
+            ValueError: its structure differs.
+        """
+        begin, hand_off, end = scenario.simulator.start_time, derive.hand_off_time(scenario), derive.end_time(scenario)
+        context = self._initial_context(scenario)
+        run = self._start(scenario, context, progress and (lambda time: progress(time - begin)))
+        try:
+            run.advance(hand_off)
+            # Carry out the hand-off now, so that the first sample of the transport has its forces.
+            run.carry_out_updates()
+            at_hand_off = run.context.Clone() if felt_obstacles(scenario) else None
+            run.advance(end)
+        except _FAILURES as failure:
+            raise _simulation_error(scenario, run, run.recording, None, failure) from failure
+        if at_hand_off is None:
+            return time_series(scenario, run.recording, run.recording)
+
+        write_parameters(self.diagram, at_hand_off, without_obstacles(scenario))
+        nominal = self._start(
+            scenario, at_hand_off, progress and (lambda time: progress(end - begin + time - hand_off))
+        )
+        try:
+            nominal.advance(end)
+        except _FAILURES as failure:
+            raise _simulation_error(scenario, nominal, run.recording, nominal.recording, failure) from failure
+        series = time_series(scenario, run.recording, nominal.recording)
+        _require_clear(scenario, series)
+        return series
+
+    def _initial_context(self, scenario: Scenario) -> Context:
+        context = self.diagram.CreateDefaultContext()
+        set_parameters(self.diagram, context, scenario)
+        starts = derive.starts(scenario)
+        context.SetContinuousState(np.hstack([starts, np.zeros_like(starts)]).ravel())
+        return context
 
 
 def simulated_duration(scenario: Scenario) -> float:
@@ -99,20 +142,19 @@ def without_obstacles(scenario: Scenario) -> Scenario:
     return scenario.model_copy(update={"avoidance": scenario.avoidance.model_copy(update={"gain": 0.0})})
 
 
-def _require_clear(result: xr.Dataset) -> None:
+def _require_clear(scenario: Scenario, series: Series) -> None:
     """A robot inside an obstacle feels no force there: say so instead of carrying on as if nothing were in its way."""
-    hit = (result["clearance"] <= 0) & (result["phase"] == 1)
+    hit = (series["clearance"] <= 0) & (series["phase"] == 1)[:, None, None]
     if not hit.any():
         return
-    first = hit.isel(time=int(np.argmax(hit.any(["robot", "obstacle"]).values)))
-    robot, obstacle = (int(index[0]) + 1 for index in np.nonzero(first.values))
-    time = float(first["time"])
+    sample, robot, obstacle = (int(index[0]) for index in np.nonzero(hit))
+    time = float(series["time"][sample])
     raise SimulationError(
-        f"robot {robot} is inside obstacle {obstacle} at t = {time:.6g} s. Try other starting positions, another "
-        "place for the obstacle, or a larger avoidance.gain.",
+        f"robot {robot + 1} is inside obstacle {obstacle + 1} at t = {time:.6g} s. Try other starting positions, "
+        "another place for the obstacle, or a larger avoidance.gain.",
         time,
-        robot,
-        result,
+        robot + 1,
+        labelled_result(scenario, series),
     )
 
 
@@ -120,18 +162,20 @@ def _require_clear(result: xr.Dataset) -> None:
 _FAILURES = (RuntimeError, ArithmeticError, SystemExit)
 
 
-def _simulation_error(scenario: Scenario, run: Engine, partial: xr.Dataset, failure: BaseException) -> SimulationError:
+def _simulation_error(
+    scenario: Scenario, failed: Engine, run: Recording, nominal: Recording | None, failure: BaseException
+) -> SimulationError:
     """Say when, which robot, why and what to try."""
-    time = run.recording.times[-1] if len(run.recording.times) else run.context.get_time()
-    robot = _culprit(run)
+    time = failed.recording.times[-1] if len(failed.recording.times) else failed.context.get_time()
+    robot = _culprit(failed)
     reasons: dict[type[BaseException], str] = {
         NonFiniteStateError: "its state is no longer finite",
         ZeroDivisionError: "it met another robot or the middle of an obstacle",
         OverflowError: "its forces grew beyond all bounds",
     }
     reason = reasons.get(type(failure), f"the integrator gave up ({failure})")
-    message = f"the run stopped at t = {time:.6g} s at robot {robot}: {reason}. Try {_advice(scenario, run)}."
-    return SimulationError(message, float(time), robot, partial)
+    message = f"the run stopped at t = {time:.6g} s at robot {robot}: {reason}. Try {_advice(scenario, failed)}."
+    return SimulationError(message, float(time), robot, labelled_result(scenario, time_series(scenario, run, nominal)))
 
 
 def _advice(scenario: Scenario, run: Engine) -> str:

@@ -27,6 +27,7 @@ class Axis:
         scale: ``linear`` or ``log`` where the spacing, or the distribution, of a path's values says so.
         probes: positions to check before anything runs.
         place: where it stands in the sweep file.
+        source: the key under which its values stand there.
     """
 
     kind: str
@@ -36,6 +37,7 @@ class Axis:
     scale: Mapping[str, str]
     probes: Sequence[int]
     place: Path
+    source: str
 
     def __len__(self) -> int:
         return len(next(iter(self.columns.values())))
@@ -47,11 +49,13 @@ class Axis:
 
     def origin(self, position: int, path: str) -> Path:
         """Where in the sweep file the value of a path at a position was written, or the nearest place around it."""
-        if self.kind == "list":
-            return (*self.place, "points", position, "set", path)
-        if self.kind == "random":
-            return (*self.place, "draw", path)
-        return (*self.place, "values", *([path] if self.kind == "zip" else []), position)
+        inside: dict[str, Path] = {
+            "grid": (position,),
+            "zip": (path, position),
+            "list": (position, "set", path),
+            "random": (path,),
+        }
+        return (*self.place, self.source, *inside[self.kind])
 
 
 def resolve(model: AxisModel, place: Path) -> tuple[Axis | None, list[Fault]]:
@@ -60,6 +64,7 @@ def resolve(model: AxisModel, place: Path) -> tuple[Axis | None, list[Fault]]:
     Args:
         model: as the user wrote it.
         place: where it stands in the sweep file.
+        source: the key under which its values stand there.
     """
     faults = list(_CHECKS[model.kind](model, place))
     return (None, faults) if faults else (_MAKERS[model.kind](model, place), [])
@@ -79,26 +84,27 @@ def _grid(model: GridAxis, place: Path) -> Axis:
         scale, values = "log", np.geomspace(*model.logspace).tolist()
     probes = range(len(values)) if model.values else (0, len(values) - 1)
     scales = dict.fromkeys(paths, scale) if model.values is None else {}
-    return Axis("grid", model.name or "", dict.fromkeys(paths, values), model.labels, scales, probes, place)
+    source = next(name for name in ("values", "linspace", "logspace") if getattr(model, name))
+    return Axis("grid", model.name or "", dict.fromkeys(paths, values), model.labels, scales, probes, place, source)
 
 
 def _zip(model: ZipAxis, place: Path) -> Axis:
     count = len(next(iter(model.values.values())))
-    return Axis("zip", model.name, model.values, model.labels, {}, range(count), place)
+    return Axis("zip", model.name, model.values, model.labels, {}, range(count), place, "values")
 
 
 def _list(model: ListAxis, place: Path) -> Axis:
     paths = dict.fromkeys(path for point in model.points for path in point.set)
     columns = {path: [point.set.get(path, UNSET) for point in model.points] for path in paths}
     labels = tuple(point.label for point in model.points)
-    return Axis("list", model.name, columns, labels, {}, range(len(labels)), place)
+    return Axis("list", model.name, columns, labels, {}, range(len(labels)), place, "points")
 
 
 def _random(model: RandomAxis, place: Path) -> Axis:
     columns = {path: draws(model.seed, path, one, model.count) for path, one in model.draw.items()}
     scale = {path: "log" if one.loguniform else "linear" for path, one in model.draw.items()}
     # A distribution with tails may well draw what is not allowed: those runs fail, the sweep is not refused.
-    return Axis("random", model.name, columns, None, scale, (0,), place)
+    return Axis("random", model.name, columns, None, scale, (0,), place, "draw")
 
 
 def draws(seed: int, path: str, distribution: Distribution, count: int) -> list[Any]:

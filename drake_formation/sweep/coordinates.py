@@ -24,7 +24,8 @@ class Coordinate:
         name: the dimension's own name for the one by which positions are selected.
         dimension: name of the dimension.
         values: numbers, or texts where a value is not a number; one a position.
-        attributes: ``path`` of the swept field, ``units``, ``long_name``, and ``scale`` (linear or log) if known.
+        attributes: ``kind`` of the axis, ``path`` of the swept field, ``units``, ``long_name``, ``scale`` (linear or
+            log); those that there are.
     """
 
     name: str
@@ -55,11 +56,11 @@ def coordinates(axes: Sequence[Axis]) -> list[Coordinate]:
     for axis, dimension in zip(axes, dimensions(axes), strict=True):
         if axis.kind == "grid":
             path, column = next(iter(axis.columns.items()))
-            attributes = field_attributes(path) | {"path": " ".join(axis.columns)} | _scale(axis, path)
+            attributes = field_attributes(path) | {"path": " ".join(axis.columns), "kind": "grid"} | _scale(axis, path)
             result.append(Coordinate(dimension, dimension, _array(axis.labels or column), attributes))
             continue
         labels = _array(axis.labels) if axis.labels else np.arange(1, len(axis) + 1)
-        result.append(Coordinate(dimension, dimension, labels, {"long_name": f"{axis.kind} axis"}))
+        result.append(Coordinate(dimension, dimension, labels, {"kind": axis.kind, "long_name": dimension}))
         for path, column in axis.columns.items():
             if UNSET not in column:
                 attributes = field_attributes(path) | _scale(axis, path)

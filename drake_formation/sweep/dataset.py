@@ -11,6 +11,7 @@ import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
+from drake_formation.simulation.result import VARIABLES
 from drake_formation.sweep.coordinates import Coordinate, coordinates, dimensions
 from drake_formation.sweep.definition import Sweep
 from drake_formation.sweep.quantities import metric_attributes
@@ -25,18 +26,6 @@ MISSING, DONE, FAILED = 0, 1, 2
 
 _BLOCK = 2_000_000
 """Numbers held in memory at once, roughly."""
-
-_SERIES_ATTRIBUTES = {
-    "position": ("m", "position q in the world frame"),
-    "velocity": ("m/s", "velocity v in the world frame"),
-    "tracking_error": ("m", "distance to the reference, q - q_r (Eq. 9)"),
-    "deviation": ("m", "deviation from the obstacle-free response"),
-    "consensus_error": ("m", "consensus error e (Eq. 19)"),
-    "tracking_force": ("N", "local control u_l (Eq. 10)"),
-    "consensus_force": ("N", "global control u_g (Eq. 15)"),
-    "avoidance_force": ("N", "obstacle avoidance"),
-    "control_force": ("N", "control u, the sum of the three (Eq. 8)"),
-}
 
 
 def write_dataset(path: Path, sweep: Sweep, store: Store, made_with: dict[str, str]) -> None:
@@ -162,7 +151,7 @@ def _create_variables(
             settings |= {"zlib": True, "complevel": 1, "chunksizes": (*[1] * (len(sizes) - 1), along, *shape)}
         variable = file.createVariable(name, "f8", (*swept, *_inner(name, shape)), **settings)
         if name in SERIES:
-            variable.units, variable.long_name = _SERIES_ATTRIBUTES[name]
+            _, variable.units, variable.long_name = VARIABLES[name]
         else:
             variable.setncatts(metric_attributes(name))
 

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, Tag
 
 from drake_formation.scenario.values import Positive, Section
+from drake_formation.simulation.result import VARIABLES, VECTOR
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$")]
 FieldPath = Annotated[str, Field(pattern=r"^[^.]+(\.[^.]+)*$")]
@@ -19,17 +20,7 @@ Steps = Annotated[tuple[float, float, Annotated[int, Field(ge=1)]], Field(strict
 Values = Annotated[tuple[Any, ...], Field(strict=False, min_length=1)]
 Labels = Annotated[tuple[str, ...], Field(strict=False)]
 
-SERIES = (
-    "position",
-    "velocity",
-    "tracking_error",
-    "deviation",
-    "consensus_error",
-    "tracking_force",
-    "consensus_force",
-    "avoidance_force",
-    "control_force",
-)
+SERIES = tuple(name for name, (dimensions, _, _) in VARIABLES.items() if dimensions == VECTOR)
 """Variables of a run that a sweep may sample, each over robots and axes."""
 
 
@@ -83,7 +74,7 @@ class ListAxis(Section):
     """Explicit points, each with a label."""
 
     kind: Literal["list"] = Field(description="kind of axis")
-    name: Name = Field(default="case", description="name of the dimension")
+    name: Name = Field(default="point", description="name of the dimension")
     points: Annotated[tuple[ListPoint, ...], Field(strict=False, min_length=1)] = Field(description="the points")
 
 

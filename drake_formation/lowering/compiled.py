@@ -14,6 +14,7 @@ from pydrake.systems.framework import Context, Diagram
 from drake_formation.lowering import cache
 from drake_formation.lowering.errors import LoweringError
 from drake_formation.lowering.events import Updates
+from drake_formation.lowering.hoisting import HOISTED
 from drake_formation.lowering.schedule import Layout, Table
 from drake_formation.lowering.source import derivatives_source, outputs_source
 from drake_formation.lowering.wiring import Port, Wiring
@@ -70,15 +71,17 @@ class CompiledDiagram:
         self._layout = Layout(wiring, _state_addresses(diagram, wiring))
         program = self._layout.derivatives()
         self._table = program.table
-        self._derivatives: Callable[..., None] = cache.load(derivatives_source(program)).derivatives
+        code = cache.load(derivatives_source(program))
+        self._prepare: Callable[..., None] = code.prepare
+        self._derivatives: Callable[..., None] = code.derivatives
         self._groups_of: dict[Any, list[tuple[str, int, int]]] = {block: [] for block in wiring.blocks.values()}
         for (block, space, group), address in self._layout.groups.items():
-            if space != "state":
+            if space not in ("state", HOISTED):
                 self._groups_of[block].append((space, group, address))
         self._outputs: dict[tuple[str, ...], tuple[Callable[..., None], Table, Table]] = {}
 
     def read(self, context: Context) -> Array:
-        """Values of a Context of the diagram: its parameters, discrete state and inputs.
+        """Values of a Context of the diagram: its parameters, discrete state and inputs, and what follows from them.
 
         Raises:
             ValueError: an input that is needed has no value.
@@ -98,6 +101,7 @@ class CompiledDiagram:
                 else:
                     continue
                 values[address : address + len(found)] = found
+        self._prepare(values, self._table)
         return values
 
     def derivatives(self, time: float, state: Array, values: Array) -> Array:

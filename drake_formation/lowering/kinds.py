@@ -7,7 +7,23 @@ from typing import Any
 from drake_formation.lowering.emit import Kernel, emit
 from drake_formation.lowering.errors import LoweringError
 from drake_formation.lowering.expressions import Graph, Leaf, UnsupportedOperationError
+from drake_formation.lowering.hoisting import hoist
 from drake_formation.lowering.trace import TracedBlock
+
+
+@dataclass(frozen=True)
+class Split:
+    """A function in two parts.
+
+    Attributes:
+        once: computes what is fixed, or None where nothing is.
+        always: computes the rest.
+        size: how many numbers the first hands to the second.
+    """
+
+    once: Kernel | None
+    always: Kernel
+    size: int
 
 
 @dataclass(frozen=True)
@@ -18,11 +34,13 @@ class Kind:
         graph: the expressions' nodes.
         roots: the nodes of its values.
         inputs: number of input ports of such a block.
+        function: the output port that computes it, or ``DERIVATIVES``.
     """
 
     graph: Graph
     roots: list[int]
     inputs: int
+    function: int
 
     @cached_property
     def leaves(self) -> set[Leaf]:
@@ -47,8 +65,21 @@ class Kind:
 
     @cached_property
     def kernel(self) -> Kernel:
-        """Its source."""
+        """Its source as a whole."""
         return emit(self.graph, self.roots, self.inputs)
+
+    def split(self, fixed_ports: frozenset[int]) -> Split:
+        """Its source in two parts: what is computed once, and what in every step."""
+        if fixed_ports not in self._splits:
+            once, always = hoist(self.graph, self.roots, fixed_ports, self.function)
+            self._splits[fixed_ports] = Split(
+                emit(self.graph, once, self.inputs) if once else None, emit(self.graph, always, self.inputs), len(once)
+            )
+        return self._splits[fixed_ports]
+
+    @cached_property
+    def _splits(self) -> dict[frozenset[int], Split]:
+        return {}
 
 
 class KindTable:
@@ -74,7 +105,7 @@ class KindTable:
                 return kind
         graph = Graph(block.symbols.leaf_of)
         try:
-            kind = Kind(graph, [graph.read(expression) for expression in expressions], len(block.sizes[0]))
+            kind = Kind(graph, [graph.read(expression) for expression in expressions], len(block.sizes[0]), function)
         except (UnsupportedOperationError, KeyError) as error:
             raise LoweringError(block.path, f"it uses {error}, which has no compiled counterpart") from error
         family.append((expressions, kind))

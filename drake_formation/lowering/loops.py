@@ -20,10 +20,16 @@ class Term(NamedTuple):
     leaves: tuple[Leaf, ...]
 
 
-class Loop(NamedTuple):
-    """A loop's length; it is a number of the instance, not of the code."""
+class Store(NamedTuple):
+    """A value to keep at a place, or where ``loop`` is the number of a loop, one in each of its turns.
 
-    turns: int
+    In turn k the place is ``place + k step``.
+    """
+
+    value: int
+    place: int
+    step: int = 0
+    loop: int | None = None
 
 
 class LoopFinder:
@@ -52,6 +58,23 @@ class LoopFinder:
                 self._rewritten[number] = self._graph.add(node.operation, arguments, node.content)
         return self._rewritten[number]
 
+    def stores(self, roots: list[int]) -> list[Store]:
+        """Values to keep one after the other; like ones become a loop too."""
+        families: dict[object, list[Term]] = {}
+        for place, root in enumerate(roots):
+            number, form, leaves = self._term(root)
+            families.setdefault(form, []).append(Term(number, form, (Leaf("out", 0, place), *leaves)))
+        result = []
+        for family in families.values():
+            for run in _runs(family):
+                place = run[0].leaves[0].offset
+                if len(run) < FEWEST:
+                    result += [Store(self.rewrite(term.number), term.leaves[0].offset) for term in run]
+                else:
+                    step = run[1].leaves[0].offset - place
+                    result.append(Store(self._turn(run), place, step, self._loop_of(len(run))))
+        return result
+
     def _sum(self, node: Node) -> int:
         families: dict[object, list[Term]] = {}
         for argument in node.arguments:
@@ -67,25 +90,35 @@ class LoopFinder:
         return terms[0] if len(terms) == 1 else self._graph.add("Add", terms)
 
     def _loop(self, run: list[Term]) -> int:
-        if len(run) not in self.turns:
-            self.turns.append(len(run))
+        return self._graph.add("Sum", [self._turn(run)], float(self._loop_of(len(run))))
+
+    def _loop_of(self, length: int) -> int:
+        """Number of the loop of a length."""
+        if length not in self.turns:
+            self.turns.append(length)
+        return self.turns.index(length)
+
+    def _turn(self, run: list[Term]) -> int:
+        """What is computed in one turn of a loop over some terms."""
         moving = {
             first: Walk(*first, *_step(first, second))
             for first, second in zip(run[0].leaves, run[1].leaves, strict=True)
             if first != second
         }
-        body = self._moved(run[0].number, moving, {})
-        return self._graph.add("Sum", [body], float(self.turns.index(len(run))))
+        return self._moved(run[0].number, moving, {})
 
     def _moved(self, number: int, moving: dict[Leaf, Walk], done: dict[int, int]) -> int:
-        """Number of a node in which the moving leaves walk."""
+        """Number of a node in which the moving leaves walk; what has none in it is rewritten as usual."""
         if number not in done:
             node = self._graph.nodes[number]
             if isinstance(node.content, Leaf):
                 done[number] = self._graph.add("leaf", content=moving.get(node.content, node.content))
             else:
                 arguments = [self._moved(argument, moving, done) for argument in node.arguments]
-                done[number] = self._graph.add(node.operation, arguments, node.content)
+                stays = tuple(arguments) == node.arguments
+                done[number] = (
+                    self.rewrite(number) if stays else self._graph.add(node.operation, arguments, node.content)
+                )
         return done[number]
 
     def _term(self, number: int) -> Term:

@@ -7,23 +7,34 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from drake_formation.lowering.emit import Kernel
 from drake_formation.lowering.errors import LoweringError
 from drake_formation.lowering.expressions import Leaf
+from drake_formation.lowering.hoisting import HOISTED, is_fixed
 from drake_formation.lowering.kinds import Kind, KindTable
 from drake_formation.lowering.trace import DERIVATIVES, SymbolTable, TracedBlock
 from drake_formation.lowering.wiring import Port, Wiring
 
 Table = NDArray[np.uint32]
+Task = tuple[int, Kernel, list[int]] | None
+"""A level, a kernel and the kernel's row for one block; None where there is nothing to do."""
 
 
 @dataclass(frozen=True)
 class Job:
-    """A kind to be computed for one block once everything it reads is there, which is so at its level."""
+    """A kind to be computed for one block once everything it reads is there, which is so at its level.
+
+    Attributes:
+        fixed_ports: input ports that do not change between two updates of the diagram.
+        fixed: whether the result does not change either.
+    """
 
     block: Any
     kind: Kind
     level: int
     address: int
+    fixed_ports: frozenset[int]
+    fixed: bool
 
 
 @dataclass(frozen=True)
@@ -31,11 +42,13 @@ class Program:
     """Kernels in the order in which they run, and the table of addresses that they read.
 
     Attributes:
+        once: source of the kernels that write what is fixed into the memory.
         outputs: source of the kernels that write outputs into the memory.
         derivatives: source of the kernels that write time derivatives; they run last.
         table: for each kernel the address of its list of rows and their number; then the lists; then the rows.
     """
 
+    once: list[str]
     outputs: list[str]
     derivatives: list[str]
     table: Table
@@ -45,7 +58,7 @@ class Layout:
     """The memory of a diagram: one array that holds everything a block reads.
 
     First the continuous state, in Drake's order; then each block's discrete state, numeric parameters and free inputs
-    (those that no block feeds); then the outputs that have been asked for.
+    (those that no block feeds); then the outputs that have been asked for, and what is computed once for them.
 
     Args:
         wiring: the blocks and their connections.
@@ -54,7 +67,7 @@ class Layout:
     Attributes:
         size: length of the memory.
         groups: address of every group of numbers: (block, ``state``, 0), (block, ``discrete``, k), (block,
-            ``parameter``, k) and (block, ``input``, port) of the free inputs.
+            ``parameter``, k), (block, ``input``, port) of the free inputs and (block, ``hoisted``, function).
         used_inputs: the free inputs that something asked for depends on.
     """
 
@@ -84,7 +97,7 @@ class Layout:
         for block, traced in self.blocks.items():
             if traced.sizes[1]:
                 kind = self._kinds.find(traced, DERIVATIVES)
-                jobs.append(Job(block, kind, self._level(block, kind), self.groups[block, "state", 0]))
+                jobs.append(self._job(block, kind, self.groups[block, "state", 0]))
         return self._program(self._needed(jobs), jobs)
 
     def outputs(self, ports: Iterable[Port]) -> Program:
@@ -98,13 +111,19 @@ class Layout:
         if key not in self._outputs:
             self._outputs[key] = None
             kind = self._kinds.find(self.blocks[block], port)
-            level = self._level(block, kind)
+            self._level(block, kind)  # what it reads comes first in the memory
             address = self._leaf_address(block, kind.copied) if kind.copied else self._allocate(len(kind.roots))
-            self._outputs[key] = Job(block, kind, level, address)
+            self._outputs[key] = self._job(block, kind, address)
         job = self._outputs[key]
         if job is None:
             raise LoweringError(self.blocks[block].path, "it is part of an algebraic loop")
         return job
+
+    def _job(self, block: Any, kind: Kind, address: int) -> Job:
+        sources = {port: self._wiring.source(block, port) for port in kind.ports}
+        fixed_ports = frozenset(port for port, source in sources.items() if not source or self._output(*source).fixed)
+        fixed = kind.function != DERIVATIVES and all(is_fixed(leaf, fixed_ports) for leaf in kind.leaves)
+        return Job(block, kind, self._level(block, kind), address, fixed_ports, fixed)
 
     def _sources(self, block: Any, kind: Kind) -> list[Job]:
         sources = [self._wiring.source(block, port) for port in kind.ports]
@@ -134,27 +153,61 @@ class Layout:
 
     def _program(self, outputs: list[Job], derivatives: list[Job]) -> Program:
         unique = list({id(job): job for job in outputs}.values())
-        first, last = self._steps(unique), self._steps(derivatives)
-        bodies = [body for _, body in first], [body for _, body in last]
-        return Program(*bodies, _packed([*first.values(), *last.values()]))
+        once = _Steps([*(self._once(job) for job in [*unique, *derivatives])])
+        always = _Steps([self._always(job) for job in unique if not job.fixed])
+        last = _Steps([self._always(job) for job in derivatives])
+        return Program(once.bodies, always.bodies, last.bodies, _packed([*once.rows, *always.rows, *last.rows]))
 
-    def _steps(self, jobs: list[Job]) -> dict[tuple[int, str], list[list[int]]]:
-        """Rows of each kernel, in the order in which the kernels run."""
-        steps: dict[tuple[int, str], list[list[int]]] = {}
-        for job in sorted(jobs, key=lambda job: (job.level, job.kind.kernel.body)):
-            kernel, ports = job.kind.kernel, job.kind.ports
-            groups = [self.groups[(job.block, *group)] for group in kernel.groups]
-            inputs = [
-                self._leaf_address(job.block, Leaf("input", port, 0)) if port in ports else 0
-                for port in range(max(ports, default=-1) + 1)
-            ]
-            row = [job.address, *groups, *kernel.turns, *inputs]
-            steps.setdefault((job.level, kernel.body), []).append(row)
-        return steps
+    def _once(self, job: Job) -> Task:
+        """What a job computes once: everything, a part, or nothing."""
+        if job.fixed:
+            return self._task(job, job.kind.kernel, job.address)
+        split = job.kind.split(job.fixed_ports)
+        key = (job.block, HOISTED, job.kind.function)
+        if split.once and key not in self.groups:
+            self.groups[key] = self._allocate(split.size)
+        return self._task(job, split.once, self.groups[key]) if split.once else None
+
+    def _always(self, job: Job) -> Task:
+        return self._task(job, job.kind.split(job.fixed_ports).always, job.address)
+
+    def _task(self, job: Job, kernel: Kernel, address: int) -> Task:
+        groups = [self.groups[(job.block, *group)] for group in kernel.groups]
+        ports = job.kind.ports
+        inputs = [
+            self._leaf_address(job.block, Leaf("input", port, 0)) if port in ports else 0
+            for port in range(max(ports, default=-1) + 1)
+        ]
+        return job.level, kernel, [address, *groups, *kernel.turns, *inputs]
 
     def _allocate(self, size: int) -> int:
         self.size += size
         return self.size - size
+
+
+class _Steps:
+    """Tasks in order: those of one level and of one kernel run one after the other, in one step.
+
+    Attributes:
+        bodies: source of the kernel of each step.
+        rows: rows of each step.
+    """
+
+    def __init__(self, tasks: list[Task]) -> None:
+        steps: dict[tuple[int, str], list[tuple[Kernel, list[int]]]] = {}
+        known = [task for task in tasks if task]
+        for level, kernel, row in sorted(known, key=lambda task: (task[0], task[1].body)):
+            steps.setdefault((level, kernel.body), []).append((kernel, row))
+        self.bodies = [_body({kernel.turns: kernel for kernel, _ in step}) for step in steps.values()]
+        self.rows = [[row for _, row in step] for step in steps.values()]
+
+
+def _body(kernels: dict[tuple[int, ...], Kernel]) -> str:
+    """Source of a step; its loops' lengths stand in the code where they are the same for all blocks."""
+    if len(kernels) > 1:
+        return next(iter(kernels.values())).body
+    ((turns, kernel),) = kernels.items()
+    return kernel.body_with(turns)
 
 
 def _packed(steps: list[list[list[int]]]) -> Table:

@@ -9,17 +9,23 @@ from numba import njit
 """
 KERNEL = """
 
-@njit({options})
+@njit(forceinline=True, {options})
 def {name}(t, m, table, step, out):
 {body}
 """
 DERIVATIVES = """
 
+@njit("void(float64[::1], uint32[::1])", cache=True, {options})
+def prepare(m, table):
+    t = 0.0
+{once}
+
+
 @njit("void(float64, float64[::1], float64[::1], uint32[::1], float64[::1])", cache=True, {options})
 def derivatives(t, x, m, table, dx):
     for k in range(x.size):
         m[k] = x[k]
-{calls}
+{always}
 """
 OUTPUTS = """
 
@@ -29,11 +35,13 @@ OUTPUTS = """
     {options},
 )
 def outputs(times, states, m, table, addresses, values):
+    t = 0.0
+{once}
     for sample in range(times.size):
         t = times[sample]
         for k in range(states.shape[1]):
             m[k] = states[sample, k]
-{calls}
+{always}
         for k in range(addresses.size):
             values[sample, k] = m[addresses[k]]
 """
@@ -44,21 +52,28 @@ another order, so that loops over neighbours run on vector units; infinities and
 
 
 def derivatives_source(program: Program) -> str:
-    """Source of ``derivatives(t, x, m, table, dx)``."""
-    targets = ["m"] * len(program.outputs) + ["dx"] * len(program.derivatives)
-    return _module([*program.outputs, *program.derivatives], targets, DERIVATIVES, "    ")
+    """Source of ``prepare(m, table)``, which computes what is fixed, and ``derivatives(t, x, m, table, dx)``."""
+    return _module(program, DERIVATIVES, "    ")
 
 
 def outputs_source(program: Program) -> str:
     """Source of ``outputs(times, states, m, table, addresses, values)``."""
-    return _module(program.outputs, ["m"] * len(program.outputs), OUTPUTS, "        ")
+    return _module(program, OUTPUTS, "        ")
 
 
-def _module(bodies: list[str], targets: list[str], function: str, indent: str) -> str:
+def _module(program: Program, functions: str, indent: str) -> str:
+    bodies = [*program.once, *program.outputs, *program.derivatives]
     names = {body: f"kernel_{k}" for k, body in enumerate(dict.fromkeys(bodies))}
     kernels = [KERNEL.format(name=name, body=body, options=OPTIONS) for body, name in names.items()]
+    targets = ["m"] * (len(program.once) + len(program.outputs)) + ["dx"] * len(program.derivatives)
     calls = [
-        f"{indent}{names[body]}(t, m, table, {2 * step}, {target})"
+        f"{names[body]}(t, m, table, {2 * step}, {target})"
         for step, (body, target) in enumerate(zip(bodies, targets, strict=True))
     ]
-    return "".join([HEAD, *kernels, function.format(calls="\n".join(calls), options=OPTIONS)])
+    once, always = calls[: len(program.once)], calls[len(program.once) :]
+    text = functions.format(
+        once="\n".join(f"    {call}" for call in once),
+        always="\n".join(f"{indent}{call}" for call in always),
+        options=OPTIONS,
+    )
+    return "".join([HEAD, *kernels, text])

@@ -1,0 +1,89 @@
+"""The diagram's robots with their consensus controllers taken out, so that a test can put a delay or a loss between.
+
+Plants, springs and tracking controllers are the diagram's own blocks with its parameters, compiled; the consensus force
+comes in from outside, from the law that the consensus block shares.
+"""
+
+import numpy as np
+from pydrake.systems.framework import DiagramBuilder
+from pydrake.systems.primitives import Adder, ConstantVectorSource
+
+from drake_formation.formation import graphs
+from drake_formation.lowering import lower
+from drake_formation.parameters import block_parameters, robot_name
+from drake_formation.references.set_point import SetPoint
+from drake_formation.scenario import derive
+from drake_formation.systems.consensus import consensus_force
+from drake_formation.systems.plant import RobotPlant
+from drake_formation.systems.tracking import TrackingController
+
+
+class OpenChannels:
+    """Robots of a scenario at rest (``LinearFormation.scenario``).
+
+    ``to`` and ``of`` are the robots that each directed channel goes to and comes from; ``rest`` is the state (4N,).
+    """
+
+    def __init__(self, scenario):
+        graph = derive.communication_graph(scenario)
+        pairs = [(i, j) for i in sorted(graph) for j in graphs.neighbours(graph, i)]
+        self.to, self.of = np.array(pairs).T
+        slots = derive.slots(scenario)
+        self.displacements = slots[self.to] - slots[self.of]
+        self.gains = scenario.consensus.delta, scenario.consensus.delta_v
+        diagram, self.rest = _without_consensus(scenario)
+        self._compiled = lower(diagram)
+        context = diagram.CreateDefaultContext()
+        ports = [diagram.get_input_port(k) for k in range(diagram.num_input_ports())]
+        for k, port in enumerate(ports):
+            port.FixValue(context, [1e6 + 2 * k, 1e6 + 2 * k + 1])
+        self._values = self._compiled.read(context)
+        self._places = np.array([np.flatnonzero(self._values == 1e6 + k)[0] for k in range(2 * len(ports))])
+
+    def channel_forces(self, own, heard):
+        """What each channel adds to the force on its robot (N), shape (channels, 2).
+
+        ``own`` and ``heard`` are the states of the robot and of its neighbour as they are compared, (channels, 4).
+        """
+        difference = own - heard
+        return np.stack(consensus_force(*difference.T, *self.gains, *self.displacements.T), axis=-1)
+
+    def forces(self, channel_forces):
+        """Their sums for every robot, shape (N, 2)."""
+        result = np.zeros((len(self.rest) // 4, 2))
+        np.add.at(result, self.to, channel_forces)
+        return result
+
+    def derivatives(self, state, forces):
+        """Time derivatives of all robots, shape (4N,), under consensus forces (N, 2)."""
+        self._values[self._places] = forces.ravel()
+        return self._compiled.derivatives(0.0, state, self._values)
+
+
+def _without_consensus(scenario):
+    parameters = block_parameters(scenario)
+    builder = DiagramBuilder()
+    phase = builder.AddNamedSystem("phase", ConstantVectorSource([1.0]))
+    reference = builder.AddNamedSystem("reference", SetPoint(*parameters["reference"]))
+    builder.Connect(phase.get_output_port(), reference.GetInputPort("phase"))
+    springs, starts = derive.spring_graph(scenario), derive.starts(scenario)
+    start = np.hstack([starts, np.zeros_like(starts)])
+    plants = []
+    for i, state in enumerate(start):
+        name = robot_name(i)
+        held = [j + 1 for j in graphs.neighbours(springs, i)]
+        plant = RobotPlant(held, scenario.springs.law, *parameters[f"{name}/plant"], state)
+        tracking = TrackingController(*parameters[f"{name}/tracking"])
+        plants.append(builder.AddNamedSystem(f"{name}_plant", plant))
+        builder.AddNamedSystem(f"{name}_tracking", tracking)
+        control = builder.AddNamedSystem(f"{name}_control", Adder(2, 2))
+        builder.Connect(plant.GetOutputPort("state"), tracking.GetInputPort("state"))
+        builder.Connect(reference.get_output_port(), tracking.GetInputPort("reference"))
+        builder.Connect(tracking.GetOutputPort("force"), control.get_input_port(0))
+        builder.ExportInput(control.get_input_port(1), f"{name}_consensus")
+        builder.Connect(control.get_output_port(), plant.GetInputPort("force"))
+        builder.Connect(phase.get_output_port(), plant.GetInputPort("phase"))
+    for i, j in graphs.edges(springs):
+        builder.Connect(plants[j].GetOutputPort("state"), plants[i].GetInputPort(f"spring_{j + 1}"))
+        builder.Connect(plants[i].GetOutputPort("state"), plants[j].GetInputPort(f"spring_{i + 1}"))
+    return builder.Build(), start.ravel()

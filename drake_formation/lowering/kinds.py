@@ -85,12 +85,15 @@ class Kind:
 class KindTable:
     """The kinds found so far.
 
-    Every block is traced: what one block computes may depend on attributes that Drake does not know. Comparing its
-    expressions with a kind's is quick; reading them is done once a kind.
+    Every block is traced, for what it computes may depend on attributes that Drake does not know; comparing its
+    expressions with a kind's is quick, and reading them is done once a kind. A block may spare itself the trace by an
+    attribute ``kind``: blocks of one class whose ``kind`` is equal promise to compute the same of the inputs, state
+    and parameters that they read.
     """
 
     def __init__(self) -> None:
-        self._known: dict[Any, list[tuple[list[Any], Kind]]] = {}
+        self._traced: dict[Any, list[tuple[list[Any], Kind]]] = {}
+        self._promised: dict[Any, Kind] = {}
 
     def find(self, block: TracedBlock, function: int) -> Kind:
         """The kind of a block's output port or time derivatives.
@@ -98,15 +101,24 @@ class KindTable:
         Raises:
             LoweringError: the block cannot be traced, or does what cannot be compiled.
         """
+        promise = getattr(block.block, "kind", None)
+        family = (type(block.block), block.sizes, function)
+        if promise is None:
+            return self._trace(block, function, family)
+        if (promise, *family) not in self._promised:
+            self._promised[promise, *family] = self._trace(block, function, family)
+        return self._promised[promise, *family]
+
+    def _trace(self, block: TracedBlock, function: int, family: Any) -> Kind:
         expressions = block.trace(function)
-        family = self._known.setdefault((type(block.block), block.sizes, function), [])
-        for known, kind in family:
-            if all(a.EqualTo(b) for a, b in zip(known, expressions, strict=True)):
+        known = self._traced.setdefault(family, [])
+        for others, kind in known:
+            if all(a.EqualTo(b) for a, b in zip(others, expressions, strict=True)):
                 return kind
         graph = Graph(block.symbols.leaf_of)
         try:
             kind = Kind(graph, [graph.read(expression) for expression in expressions], len(block.sizes[0]), function)
         except (UnsupportedOperationError, KeyError) as error:
             raise LoweringError(block.path, f"it uses {error}, which has no compiled counterpart") from error
-        family.append((expressions, kind))
+        known.append((expressions, kind))
         return kind

@@ -58,6 +58,7 @@ def ObstacleAvoidance_(T: Any) -> Any:  # noqa: N802 - Drake's name for a templa
             """
             LeafSystem_[T].__init__(self, converter=converter)
             self.arguments = (field, obstacles, masked)
+            self.kind = masked  # all else that it computes with is a parameter
             count = len(np.reshape(obstacles, (-1, 3)))
             self._zero = T(0.0)
             self._everything = [1.0] * count

@@ -59,6 +59,7 @@ def ConsensusController_(T: Any) -> Any:  # noqa: N802 - Drake's name for a temp
             """
             LeafSystem_[T].__init__(self, converter=converter)
             self.arguments = (neighbours, gains, displacements)
+            self.kind = "consensus"  # all else that it computes with is a parameter
             self._zero = T(0.0)
             self._state = self.DeclareVectorInputPort("state", 4)
             self._channels = [self.DeclareVectorInputPort(f"channel_{j}", 4) for j in neighbours]

@@ -89,6 +89,7 @@ def RobotPlant_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             """
             LeafSystem_[T].__init__(self, converter=converter)
             self.arguments = (neighbours, law, mass, springs, initial_state)
+            self.kind = law  # all else that it computes with is a parameter
             self.law = law
             self._law = SPRING_LAWS[law]
             self._zero = T(0.0)

@@ -96,6 +96,7 @@ def TrackingController_(T: Any) -> Any:  # noqa: N802 - Drake's name for a templ
             """
             LeafSystem_[T].__init__(self, converter=converter)
             self.arguments = (gain, slot, inertia)
+            self.kind = "tracking"  # all else that it computes with is a parameter
             self._state = self.DeclareVectorInputPort("state", 4)
             self._reference = self.DeclareVectorInputPort("reference", 6)
             self.DeclareNumericParameter(BasicVector_[T](np.ravel(gain)))

@@ -11,6 +11,16 @@ Run a shipped sweep on all processors::
 from drake_formation.sweep.definition import Sweep
 from drake_formation.sweep.errors import SweepError, SweepStoppedError
 from drake_formation.sweep.load import load_sweep, shipped_sweeps
+from drake_formation.sweep.processes import Processes
 from drake_formation.sweep.run import Tally, run_sweep
 
-__all__ = ["Sweep", "SweepError", "SweepStoppedError", "Tally", "load_sweep", "run_sweep", "shipped_sweeps"]
+__all__ = [
+    "Processes",
+    "Sweep",
+    "SweepError",
+    "SweepStoppedError",
+    "Tally",
+    "load_sweep",
+    "run_sweep",
+    "shipped_sweeps",
+]

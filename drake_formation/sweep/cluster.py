@@ -35,8 +35,15 @@ class Cluster:
 
     @property
     def slots(self) -> int:
-        """Two chunks a worker: one to run, and one to go on with."""
-        return 2 * max(1, len(self._client.scheduler_info(n_workers=-1)["workers"]))
+        """Two chunks a worker: one to run, and one to go on with.
+
+        Raises:
+            SweepStoppedError: the scheduler does not answer.
+        """
+        try:
+            return 2 * max(1, len(self._client.nthreads()))
+        except OSError as error:
+            raise self._lost() from error
 
     def submit(self, chunk: Chunk) -> "Future[Report]":
         """Hand out a chunk."""
@@ -67,5 +74,8 @@ class Cluster:
     ) -> None:
         self._executor.shutdown(wait=False)
         self._client.close()
-        if kind is CancelledError:
-            raise SweepStoppedError(f"the connection to the Dask scheduler at {self._address} was lost") from error
+        if kind is CancelledError:  # so ends what the scheduler was to do, when it is gone
+            raise self._lost() from error
+
+    def _lost(self) -> SweepStoppedError:
+        return SweepStoppedError(f"the connection to the Dask scheduler at {self._address} was lost")

@@ -1,7 +1,7 @@
 """Handing out a sweep's points in chunks, and taking back what comes of them."""
 
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import replace
 
@@ -36,15 +36,11 @@ def drive(
         executor: who runs them.
         keep: called with outcomes as they come, in any order.
     """
-    again: deque[Chunk] = deque()
-    pace = _Pace(len(points))
-    fresh = _chunks(sweep, task, points, lambda: pace.size(executor.slots))
+    supply = _Supply(sweep, task, points)
     waiting: dict[Future[Report], Chunk] = {}
     while True:
-        while len(waiting) < executor.slots:
-            chunk = again.popleft() if again else next(fresh, None)
-            if chunk is None:
-                break
+        slots = executor.slots
+        while len(waiting) < slots and (chunk := supply.take(slots)):
             waiting[executor.submit(chunk)] = chunk
         if not waiting:
             return
@@ -56,33 +52,38 @@ def drive(
                 if chunk.retried:
                     keep([Outcome(index, str(death)) for index, _ in chunk.points])
                 else:
-                    again.extend(replace(chunk, points=(point,), retried=True) for point in chunk.points)
+                    supply.give_back(chunk)
                 continue
-            pace.learn(report, len(chunk.points))
+            supply.learn(report)
             keep(report.outcomes)
 
 
-def _chunks(sweep: Sweep, task: Task, points: NDArray[np.int_], size: Callable[[], int]) -> Iterator[Chunk]:
-    first = 0
-    while first < len(points):
-        last = first + size()
-        yield Chunk(task, tuple((int(index), sweep.overrides(int(index))) for index in points[first:last]))
-        first = last
+class _Supply:
+    """Chunks of the points that are left, of about the right duration."""
 
-
-class _Pace:
-    """How many points make a chunk of about the right duration."""
-
-    def __init__(self, points: int) -> None:
-        self._left = points
+    def __init__(self, sweep: Sweep, task: Task, points: NDArray[np.int_]) -> None:
+        self._sweep, self._task, self._points = sweep, task, points
+        self._next = 0
+        self._again: deque[Chunk] = deque()
         self._seconds_per_point = CHUNK_TIME
 
-    def learn(self, report: Report, points: int) -> None:
-        """Take a chunk's duration into account."""
-        self._left -= points
-        self._seconds_per_point = max(report.seconds / points, 1e-6)
-
-    def size(self, slots: int) -> int:
-        """Points of the next chunk; fewer towards the end, so that all workers end together."""
+    def take(self, slots: int) -> Chunk | None:
+        """The next chunk; smaller ones towards the end, so that all workers end together."""
+        if self._again:
+            return self._again.popleft()
+        left = len(self._points) - self._next
+        if not left:
+            return None
         wanted = int(CHUNK_TIME / self._seconds_per_point)
-        return max(1, min(wanted, MOST_POINTS, self._left // (2 * slots)))
+        size = max(1, min(wanted, MOST_POINTS, left // (2 * slots)))
+        indices = self._points[self._next : self._next + size].tolist()
+        self._next += size
+        return Chunk(self._task, tuple((index, self._sweep.overrides(index)) for index in indices))
+
+    def give_back(self, chunk: Chunk) -> None:
+        """Take back a chunk whose worker died, to be run again point by point."""
+        self._again.extend(replace(chunk, points=(point,), retried=True) for point in chunk.points)
+
+    def learn(self, report: Report) -> None:
+        """Take a chunk's duration into account."""
+        self._seconds_per_point = max(report.seconds / max(len(report.outcomes), 1), 1e-6)

@@ -1,6 +1,7 @@
 """Running a sweep: what is missing is run and kept, then all of it becomes one dataset."""
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ from drake_formation.sweep.dataset import write_dataset, write_failures
 from drake_formation.sweep.definition import Sweep
 from drake_formation.sweep.drive import drive
 from drake_formation.sweep.errors import SweepError
-from drake_formation.sweep.executors import choose
+from drake_formation.sweep.executors import Executor, choose
 from drake_formation.sweep.load import load_sweep
 from drake_formation.sweep.store import Store
 from drake_formation.sweep.work import Outcome, Task, versions
@@ -47,7 +48,7 @@ def run_sweep(
     out: str | Path,
     *,
     engine: str = "compiled",
-    executor: str = "processes",
+    executor: str | Executor = "processes",
     workers: int | None = None,
     scheduler: str | None = None,
     retry_failed: bool = False,
@@ -63,7 +64,8 @@ def run_sweep(
         sweep: a sweep, or what :func:`load_sweep` takes.
         out: folder for the runs, ``sweep.nc`` and ``figures``.
         engine: as for :func:`drake_formation.simulate`.
-        executor: ``processes`` on this machine, or ``serial``: this process.
+        executor: ``processes`` on this machine, or ``serial``: this process; or an executor that is open already, such
+            as a :class:`drake_formation.sweep.Processes` that serves several sweeps, which then stays open.
         workers: number of processes; as many as processors if not given.
         scheduler: address of a Dask scheduler, whose workers then run the sweep.
         retry_failed: run again what failed before.
@@ -82,7 +84,7 @@ def run_sweep(
         sweep = load_sweep(sweep)
     if engine not in ENGINES:
         raise SweepError(f"no engine {engine!r}; there are {', '.join(ENGINES)}")
-    workforce = choose(executor, workers, scheduler)
+    workforce = choose(executor, workers, scheduler) if isinstance(executor, str) else nullcontext(executor)
     folder = Path(out)
     identity = {"sweep": sweep.fingerprint(), "engine": engine} | versions()
     with Store(folder, identity) as store:
@@ -106,8 +108,8 @@ def run_sweep(
         tell()
         if len(missing):
             task = Task(sweep.base.data, engine, sweep.trajectories, versions())
-            with workforce:
-                drive(sweep, task, missing, workforce, keep)
+            with workforce as workers_at_hand:
+                drive(sweep, task, missing, workers_at_hand, keep)
         write_dataset(folder / DATASET, sweep, store, identity)
         write_failures(folder, sweep, store)
         dataset = xr.open_dataset(folder / DATASET, engine="netcdf4")

@@ -59,8 +59,10 @@ def summary(dataset: xr.Dataset) -> Table:
         if name not in dataset:
             continue
         values = dataset[name]
-        numbers = [values.min(), values.median(), values.max()]
-        table.add_row(values.attrs["long_name"], *(f"{float(x):.4g}" for x in numbers), values.attrs["units"])
+        known = bool(values.notnull().any())
+        numbers = [float(x) for x in (values.min(), values.median(), values.max())] if known else []
+        shown = [f"{x:.4g}" for x in numbers] or ["none"] * 3
+        table.add_row(values.attrs["long_name"], *shown, values.attrs["units"])
     return table
 
 

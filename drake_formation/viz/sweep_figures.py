@@ -64,6 +64,9 @@ def metric_figure(dataset: xr.Dataset, name: str) -> Figure:
     """
     metric = dataset[name].max("robot", keep_attrs=True) if "robot" in dataset[name].dims else dataset[name]
     metric = metric.load()
+    for dim in map(str, metric.dims):  # lines and cells follow the numbers, in whatever order they were written
+        if _is_numeric(along := _along(metric, dim)):
+            metric = metric.isel({dim: np.argsort(along.values, kind="stable")})
     figure = Figure(figsize=(7, 4.5), layout="constrained")
     _chosen(metric)(figure, metric)
     count = int((dataset["status"] == 2).sum())

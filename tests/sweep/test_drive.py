@@ -1,0 +1,106 @@
+"""Whatever chunks are made, in whatever order they end and whoever dies over them, every point comes out once."""
+
+import random
+from concurrent.futures import Future, ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from sweep.quick import quick_sweep
+
+from drake_formation.sweep import load_sweep
+from drake_formation.sweep.drive import MOST_POINTS, drive
+from drake_formation.sweep.work import Outcome, Report, Task, versions
+
+SWEEP = load_sweep(quick_sweep({"path": "springs.stiffness", "linspace": [1.0, 2.0, 3000]}))
+TASK = Task(SWEEP.base.data, "compiled", None, versions())
+
+
+class DeathError(Exception):
+    pass
+
+
+class Imagined:
+    """An executor that runs nothing: some points kill their worker, chunks end in random order."""
+
+    deaths = (DeathError,)
+
+    def __init__(self, slots, deadly=(), unlucky=0, seconds=1e-3, seed=0):
+        self.slots, self.deadly, self.unlucky, self.seconds = slots, set(deadly), unlucky, seconds
+        self.sizes, self.most, self.open = [], 0, 0
+        self._random, self._pool = random.Random(seed), ThreadPoolExecutor(1)
+
+    def submit(self, chunk):
+        self.sizes.append(len(chunk.points))
+        self.open += 1
+        self.most = max(self.most, self.open)
+        future = Future()
+        self._pool.submit(self._end, chunk, future)
+        return future
+
+    def _end(self, chunk, future):
+        self.open -= 1
+        indices = [index for index, _ in chunk.points]
+        if self.deadly & set(indices) or self.unlucky > 0:
+            self.unlucky -= 1
+            future.set_exception(DeathError("killed by signal 9"))
+        else:
+            outcomes = [
+                Outcome(index, None, {"x": np.array(sets["springs.stiffness"])}) for index, sets in chunk.points
+            ]
+            self._random.shuffle(outcomes)
+            future.set_result(Report(outcomes, self.seconds * len(indices), 1))
+
+
+def driven(executor, points):
+    kept = []
+    drive(SWEEP, TASK, np.array(points, dtype=int), executor, kept.extend)
+    assert sorted(outcome.index for outcome in kept) == sorted(points)
+    return {outcome.index: outcome for outcome in kept}
+
+
+@given(
+    slots=st.integers(1, 9),
+    points=st.sets(st.integers(0, 2999), max_size=400),
+    deadly=st.sets(st.integers(0, 2999), max_size=5),
+    seconds=st.floats(1e-5, 10),
+    seed=st.integers(),
+)
+def test_every_point_comes_out_once_and_only_culprits_fail(slots, points, deadly, seconds, seed):
+    deadly &= points
+    executor = Imagined(slots, deadly, seconds=seconds, seed=seed)
+    kept = driven(executor, sorted(points))
+    assert {index for index, outcome in kept.items() if outcome.error} == deadly
+    assert all("signal 9" in kept[index].error for index in deadly)
+    for index in points - deadly:
+        assert kept[index].values["x"] == SWEEP.overrides(index)["springs.stiffness"]
+    assert executor.most <= slots
+
+
+def test_a_worker_killed_from_outside_costs_nothing():
+    kept = driven(Imagined(2, unlucky=1), range(100))
+    assert not any(outcome.error for outcome in kept.values())
+
+
+def test_chunks_grow_with_quick_runs_and_shrink_towards_the_end():
+    executor = Imagined(2, seconds=1e-4)
+    driven(executor, range(3000))
+    assert executor.sizes[0] == 1
+    assert max(executor.sizes) == MOST_POINTS
+    assert executor.sizes[-1] == 1
+
+
+def test_slow_runs_come_one_by_one():
+    executor = Imagined(2, seconds=30.0)
+    driven(executor, range(50))
+    assert set(executor.sizes) == {1}
+
+
+def test_what_is_no_death_ends_the_sweep():
+    class Broken(Imagined):
+        def _end(self, chunk, future):
+            future.set_exception(MemoryError("no more"))
+
+    with pytest.raises(MemoryError):
+        driven(Broken(1), range(3))

@@ -1,0 +1,111 @@
+"""Real worker processes: killed, crashed, recycled, orphaned."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from drake_formation.sweep import processes as module
+from drake_formation.sweep.errors import SweepError, SweepStoppedError
+from drake_formation.sweep.processes import Processes, WorkerDiedError
+from drake_formation.sweep.work import Chunk, Task, versions
+
+
+@pytest.fixture
+def task(sweep):
+    return Task(sweep.base.data, "compiled", None, versions())
+
+
+@pytest.fixture
+def chunk(sweep, task):
+    return lambda *indices: Chunk(task, tuple((index, sweep.overrides(index)) for index in indices))
+
+
+class Deadly:
+    """Kills the process that unpickles it."""
+
+    def __reduce__(self):
+        return os._exit, (7,)
+
+
+def gone(pid):
+    """Whether a process ends within some seconds."""
+    for _ in range(200):
+        try:
+            if Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z":
+                return True
+        except OSError:
+            return True
+        time.sleep(0.05)
+    return False
+
+
+def test_a_workers_death_is_its_chunks_alone_and_the_next_has_a_new_worker(chunk, task):
+    with Processes(1) as workers:
+        assert workers.submit(chunk(0)).result().outcomes[0].error is None
+        (first,) = workers.pids
+        with pytest.raises(WorkerDiedError, match="exit status 7"):
+            workers.submit(Chunk(task, ((0, {"springs.stiffness": Deadly()}),))).result()
+        assert workers.submit(chunk(1)).result().outcomes[0].error is None
+        (second,) = workers.pids
+    assert first != second
+    assert gone(first)
+    assert gone(second)
+
+
+def test_a_killed_worker_says_so(chunk):
+    with Processes(1) as workers:
+        workers.submit(chunk(0)).result()
+        os.kill(workers.pids[0], signal.SIGKILL)
+        with pytest.raises(WorkerDiedError, match=r"signal 9; the system does that when memory runs out"):
+            workers.submit(chunk(1)).result()
+
+
+def test_a_worker_is_replaced_after_so_many_diagrams(chunk, monkeypatch):
+    monkeypatch.setattr(module, "BUILDS_PER_WORKER", 1)
+    with Processes(1) as workers:
+        workers.submit(chunk(0)).result()
+        assert not workers.pids
+
+
+def test_what_a_chunk_raises_comes_back(sweep):
+    task = Task(sweep.base.data, "compiled", None, versions() | {"numpy": "0.0"})
+    with Processes(1) as workers, pytest.raises(SweepError, match="numpy"):
+        workers.submit(Chunk(task, ())).result()
+
+
+@pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="no /proc to look into")
+def test_workers_keep_to_one_thread(chunk):
+    with Processes(1) as workers:
+        workers.submit(chunk()).result()
+        environment = Path(f"/proc/{workers.pids[0]}/environ").read_bytes().split(b"\0")
+    assert {b"OMP_NUM_THREADS=1", b"OPENBLAS_NUM_THREADS=1", b"NUMBA_NUM_THREADS=1"} <= set(environment)
+
+
+def test_an_interpreter_that_cannot_start_stops_the_sweep(chunk, monkeypatch):
+    monkeypatch.setattr(sys, "executable", "/bin/false")
+    with Processes(1) as workers, pytest.raises(SweepStoppedError, match="did not start"):
+        workers.submit(chunk(0)).result()
+
+
+def test_workers_end_when_their_parent_is_killed():
+    code = """
+import sys
+from drake_formation.sweep import load_sweep
+from drake_formation.sweep.processes import Processes
+from drake_formation.sweep.work import Chunk, Task, versions
+sweep = load_sweep("gains")
+with Processes(1) as workers:
+    workers.submit(Chunk(Task(sweep.base.data, "compiled", None, versions()), ())).result()
+    print(workers.pids[0], flush=True)
+    sys.stdin.read()
+"""
+    with subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as parent:
+        worker = int(parent.stdout.readline())
+        parent.kill()
+        parent.wait()
+        assert gone(worker)

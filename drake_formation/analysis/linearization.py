@@ -116,13 +116,21 @@ def linearize(scenario: Scenario) -> LinearFormation:
         set_parameters(diagram, context, with_overrides(rest, {**off, **named}))
         return _state_matrix(diagram, context)
 
+    def with_gains(delta: float, delta_v: float) -> Array:
+        # Past the checks: robots that do not all talk may be linearized, only not made to agree.
+        for i in range(derive.robot_count(rest.formation)):
+            block = find_block(diagram, f"{robot_name(i)}/consensus").GetMyMutableContextFromRoot(context)
+            block.get_mutable_numeric_parameter(0).SetFromVector([delta, delta_v])
+        return _state_matrix(diagram, context)
+
+    springs = linear(springs__stiffness=rest.springs.stiffness, springs__damping=rest.springs.damping)
     tracking = linear()
     return LinearFormation(
         scenario=rest,
         tracking=tracking,
-        springs=linear(springs__stiffness=rest.springs.stiffness, springs__damping=rest.springs.damping) - tracking,
-        per_delta=linear(consensus__delta=1.0) - tracking,
-        per_delta_v=linear(consensus__delta_v=1.0) - tracking,
+        springs=springs - tracking,
+        per_delta=with_gains(1.0, 0.0) - tracking,
+        per_delta_v=with_gains(0.0, 1.0) - tracking,
         B=_force_matrix(diagram, rest),
     )
 

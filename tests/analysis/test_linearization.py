@@ -85,3 +85,10 @@ def test_start_phases_reference_and_obstacles_play_no_part():
     )
     assert at_rest(plain).avoidance.obstacles == ()
     np.testing.assert_array_equal(linearize(plain).A, linearize(other).A)
+
+
+def test_robots_that_do_not_all_talk_are_linearized_too():
+    formation = linearize(load_scenario("quadrilateral", overrides={"consensus": {"graph": [[1, 2]], "delta": 0.0}}))
+    rows, positions = np.arange(16).reshape(4, 4)[:, 2:].ravel(), np.arange(16).reshape(4, 4)[:, :2].ravel()
+    expected = np.kron(-formation.laplacian / 40, np.eye(2))
+    np.testing.assert_allclose(formation.per_delta[np.ix_(rows, positions)], expected, atol=1e-12)

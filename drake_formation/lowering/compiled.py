@@ -1,10 +1,7 @@
 """A diagram as compiled code: its time derivatives, its outputs, its trajectories."""
 
-import functools
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
-from enum import IntEnum
-from pathlib import Path
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,45 +12,14 @@ from drake_formation.lowering import cache
 from drake_formation.lowering.errors import LoweringError
 from drake_formation.lowering.events import Updates
 from drake_formation.lowering.hoisting import HOISTED
+from drake_formation.lowering.integration import METHODS, Flow, Status, Steps, Trajectory
 from drake_formation.lowering.schedule import Layout, Table
 from drake_formation.lowering.source import derivatives_source, outputs_source
 from drake_formation.lowering.wiring import Port, Wiring
 
 Array = NDArray[np.float64]
 
-CHUNK = 4096
-"""Samples after which the compiled integrator reports."""
 EVERY_STEP = np.zeros(0)
-
-
-class Status(IntEnum):
-    """Why an integration returned; the numbers of :mod:`drake_formation.lowering.dormand_prince`."""
-
-    DONE = 0
-    FULL = 1
-    NOT_FINITE = 2
-    STEP_TOO_SMALL = 3
-
-
-@dataclass(frozen=True)
-class Trajectory:
-    """Samples of the continuous state between two times.
-
-    Attributes:
-        times: sample times (s), shape (samples,).
-        states: shape (samples, states).
-        values: from :meth:`CompiledDiagram.read`, as they were meanwhile.
-        status: ``DONE``, or why it ends early; where ``NOT_FINITE``, the Context holds the state that is not.
-        evaluations: derivatives evaluated.
-        rejected: steps rejected.
-    """
-
-    times: Array
-    states: Array
-    values: Array
-    status: Status
-    evaluations: int
-    rejected: int
 
 
 class CompiledDiagram:
@@ -142,6 +108,7 @@ class CompiledDiagram:
         context: Context,
         end: float,
         *,
+        method: str = "dormand_prince",
         accuracy: float = 1e-6,
         max_step: float = 0.1,
         adaptive: bool = True,
@@ -155,6 +122,8 @@ class CompiledDiagram:
         Args:
             context: a Context of the diagram.
             end: when to stop (s).
+            method: ``dormand_prince``, or ``exponential``, which takes far longer steps where the diagram is stiff but
+                nearly linear; see :mod:`drake_formation.lowering.integration`.
             accuracy: largest error of any state in one step.
             max_step: largest step (s).
             adaptive: control the step; else every step is the largest.
@@ -162,33 +131,28 @@ class CompiledDiagram:
             updated: whether the updates due at the start have been carried out.
 
         Yields:
-            The trajectory in pieces, the last of which is ``DONE`` or says why there are no more.
+            The trajectory in pieces, the last of which is ``DONE`` or says why there are no more; where its status is
+            ``NOT_FINITE``, the Context holds the state that is not.
+
+        Raises:
+            ValueError: there is no such method.
         """
-        integrate = _integrator()
+        if method not in METHODS:
+            raise ValueError(f"no method {method!r}; there are {', '.join(METHODS)}")
+        steps = Steps(accuracy, max_step, adaptive)
         state = context.get_continuous_state_vector().CopyToVector()
         while (begin := context.get_time()) < end:
             if not updated:
                 self.updates.carry_out(context)
             updated = False
-            values = self.read(context)
+            flow = Flow(self._derivatives, self._table, self.read(context))
             stop = self.updates.after(begin, end)
-            wanted = at[(at >= begin) & ((at < stop) | (stop == end))] if len(at) else at
-            if len(at) and not len(wanted):
-                wanted = np.array([np.inf])
-            clock = np.array([begin, 0.1 * max_step, 1e-4])  # Drake starts with a tenth of the largest step too
-            status = Status.FULL
-            while status == Status.FULL:
-                samples = len(wanted) or CHUNK
-                times, states = np.empty(samples), np.empty((samples, len(state)))
-                code, count, evaluations, rejected = integrate(
-                    self._derivatives, clock, stop, state, values, self._table, accuracy, max_step, adaptive, wanted,
-                    times, states,
-                )  # fmt: skip
-                status = Status(code)
-                context.SetTimeAndContinuousState(clock[0], state)
-                reported = Status.FULL if status == Status.DONE and stop < end else status
-                yield Trajectory(times[:count], states[:count], values, reported, evaluations, rejected)
-            if status != Status.DONE:
+            wanted = at[(at >= begin) & ((at < stop) | (stop == end) & (at <= end))]
+            for piece in METHODS[method](flow, begin, stop, state, steps, wanted, not len(at)):
+                context.SetTimeAndContinuousState(piece.reached, state)
+                done = piece.status == Status.DONE
+                yield replace(piece, status=Status.FULL) if done and stop < end else piece
+            if not done:
                 return
 
     def _compiled_outputs(self, names: tuple[str, ...]) -> tuple[Callable[..., None], Table, Table]:
@@ -221,14 +185,6 @@ def lower(diagram: Diagram) -> CompiledDiagram:
         LoweringError: a block cannot be compiled; it is named.
     """
     return CompiledDiagram(diagram)
-
-
-@functools.cache
-def _integrator() -> Callable[..., tuple[int, int, int, int]]:
-    """The compiled integrator, which is the same for all diagrams."""
-    source = Path(__file__).with_name("dormand_prince.py").read_text(encoding="utf-8")
-    integrate: Callable[..., tuple[int, int, int, int]] = cache.load(source).integrate
-    return integrate
 
 
 def _state_addresses(diagram: Diagram, wiring: Wiring) -> dict[Any, int]:

@@ -14,8 +14,12 @@ from drake_formation.simulation.recorder import RECORDED, NonFiniteStateError
 Array = NDArray[np.float64]
 
 
-def start(diagram: Diagram) -> Start:
+def start(diagram: Diagram, method: str) -> Start:
     """Compile a diagram; the result starts runs of it.
+
+    Args:
+        diagram: a formation diagram.
+        method: how to integrate; see :meth:`drake_formation.lowering.CompiledDiagram.integrate`.
 
     Raises:
         LoweringError: a block cannot be compiled.
@@ -24,7 +28,7 @@ def start(diagram: Diagram) -> Start:
 
     def run(scenario: Scenario, context: Context, progress: Progress | None) -> CompiledRun:
         require_compiled_settings(scenario)
-        return CompiledRun(scenario, lowered, context, progress)
+        return CompiledRun(scenario, lowered, method, context, progress)
 
     return run
 
@@ -52,18 +56,24 @@ class CompiledRun:
     Args:
         scenario: what runs.
         lowered: its diagram.
+        method: how to integrate.
         context: where to start.
         progress: called with the simulated time (s) after every piece.
     """
 
     def __init__(
-        self, scenario: Scenario, lowered: CompiledDiagram, context: Context, progress: Progress | None
+        self,
+        scenario: Scenario,
+        lowered: CompiledDiagram,
+        method: str,
+        context: Context,
+        progress: Progress | None,
     ) -> None:
         settings = scenario.simulator
         self.context = context
         self.fixed_step = not settings.use_error_control
         self.recording = CompiledRecording(lowered, derive.robot_count(scenario.formation))
-        self._lowered, self._progress = lowered, progress
+        self._lowered, self._method, self._progress = lowered, method, progress
         self._accuracy, self._max_step = settings.accuracy, settings.max_step_size
         self._updated_at = -np.inf
         context.SetTime(context.get_time() or settings.start_time)
@@ -79,6 +89,7 @@ class CompiledRun:
         pieces = self._lowered.integrate(
             self.context,
             end,
+            method=self._method,
             accuracy=self._accuracy,
             max_step=self._max_step,
             adaptive=not self.fixed_step,

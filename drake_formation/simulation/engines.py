@@ -55,10 +55,28 @@ def compiled(diagram: Diagram) -> Start:
     """
     from drake_formation.simulation.compiled import start  # building diagrams need not pay for the compiler
 
-    return start(diagram)
+    return start(diagram, "dormand_prince")
 
 
-ENGINES: dict[str, Callable[[Diagram], Start]] = {"blocks": blocks, "compiled": compiled}
+def exponential(diagram: Diagram) -> Start:
+    """The diagram compiled, its linear part integrated exactly; in place of ``runge_kutta5``.
+
+    Its steps may be longer than the oscillations of stiff springs. Where those ring, samples show them as they are at
+    their times, but peaks between samples are not seen.
+
+    Raises:
+        LoweringError: a block cannot be compiled.
+    """
+    from drake_formation.simulation.compiled import start
+
+    return start(diagram, "exponential")
+
+
+ENGINES: dict[str, Callable[[Diagram], Start]] = {
+    "blocks": blocks,
+    "compiled": compiled,
+    "exponential": exponential,
+}
 
 
 class _Blocks:

@@ -43,3 +43,15 @@ def test_a_run_that_diverges_keeps_what_was_recorded():
         simulate(load_scenario("line", overrides=overrides), engine="compiled")
     assert caught.value.partial.sizes["time"] > 1
     assert np.isfinite(caught.value.partial["position"]).all()
+
+
+@pytest.mark.parametrize("name", ["line", "quadrilateral"])
+def test_the_exponential_engine_passes_through_the_same_states(name):
+    scenario = load_scenario(name, overrides=SHORT)
+    found, expected = (simulate(scenario, engine=engine) for engine in ("exponential", "compiled"))
+    for time in (2.0, 8.0):
+        for variable in ("position", "control_force", "phase", "deviation"):
+            np.testing.assert_allclose(
+                found[variable].sel(time=time), expected[variable].sel(time=time), rtol=0, atol=1e-4
+            )
+    np.testing.assert_allclose(metrics(found).tracking_error_m, metrics(expected).tracking_error_m, rtol=0, atol=1e-4)

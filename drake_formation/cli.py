@@ -1,4 +1,4 @@
-"""The command line: ``drake-formation run | sweep | validate | graphviz | reproduce | schema | scenarios``."""
+"""The command line: ``drake-formation run | sweep | analyze | validate | graphviz | reproduce | schema | …``."""
 
 import json
 import sys
@@ -46,6 +46,7 @@ class EngineName(StrEnum):
 
     BLOCKS = "blocks"
     COMPILED = "compiled"
+    EXPONENTIAL = "exponential"
 
 
 class ExecutorName(StrEnum):
@@ -71,7 +72,8 @@ def run(
     overrides: Overrides = None,
     out: Annotated[Path | None, typer.Option(help="Folder for the results; out/NAME if not given.")] = None,
     engine: Annotated[
-        EngineName, typer.Option(help="The block diagram itself, or code compiled from it.")
+        EngineName,
+        typer.Option(help="The block diagram itself, or code compiled from it, integrated by steps or exponentially."),
     ] = EngineName.BLOCKS,
 ) -> None:
     """Run a scenario and write its metrics, result, diagram and figures."""
@@ -101,7 +103,8 @@ def sweep(
     source: Annotated[str, typer.Argument(metavar="SWEEP", help="A sweep file, or the name of a shipped one.")],
     out: Annotated[Path, typer.Option(help="Folder for the runs, the dataset and its figures.")],
     engine: Annotated[
-        EngineName, typer.Option(help="The block diagram itself, or code compiled from it.")
+        EngineName,
+        typer.Option(help="The block diagram itself, or code compiled from it, integrated by steps or exponentially."),
     ] = EngineName.COMPILED,
     executor: Annotated[ExecutorName, typer.Option(help="This process, or several.")] = ExecutorName.PROCESSES,
     workers: Annotated[int | None, typer.Option(min=1, help="Number of processes; default: of processors.")] = None,
@@ -133,6 +136,40 @@ def sweep(
     console.print(message, soft_wrap=True)
     if failed:
         raise SystemExit(FAILED_RUN)
+
+
+@app.command()
+def analyze(
+    scenario: Source,
+    overrides: Overrides = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for the certificate and its figures, if wanted.")] = None,
+    period: Annotated[float | None, typer.Option(help="Sampling period of the loss margin (s).")] = None,
+    damping_ratio: Annotated[float | None, typer.Option(help="Find the smallest δ with this damping ratio.")] = None,
+    decay_rate: Annotated[float | None, typer.Option(help="Find the smallest δ with this decay rate (1/s).")] = None,
+    force_limit: Annotated[float | None, typer.Option(help="Find the largest δ under this force (N).")] = None,
+    topology: Annotated[float | None, typer.Option(help="Find the fewest channels for this error (m).")] = None,
+) -> None:
+    """Certify a scenario before it is simulated: stability, modes, margins and what disturbances do."""
+    from drake_formation.analysis import Questions, certify
+    from drake_formation.analysis.report import report
+    from drake_formation.analysis_output import require_certificate_place, write_certificate
+    from drake_formation.output import OutputError
+
+    resolved = load_scenario(scenario, overrides=overrides)
+    try:
+        asked = Questions(period, damping_ratio, decay_rate, force_limit, topology)
+        if out:
+            require_certificate_place(out)
+        with Console(stderr=True).status("linearizing") as status:
+            certificate = certify(
+                resolved, questions=asked, progress=lambda part: status.update(part.replace("_", " "))
+            )
+            figures = write_certificate(out, certificate) if out else []
+    except (OutputError, ValueError) as error:
+        _stop(str(error), WRONG_INPUT)
+    console.print(report(certificate))
+    if out:
+        console.print(f"\nCertificate in {out}, figures ({', '.join(figures)}) in {out / 'figures'}.", soft_wrap=True)
 
 
 @app.command()

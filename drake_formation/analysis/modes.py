@@ -112,9 +112,10 @@ class Modes:
     decay_limit: float | None
 
     @cached_property
-    def slowest(self) -> Mode:
-        """The mode that decays slowest, or grows fastest."""
-        return min(self.modes, key=lambda mode: mode.decay_rate)
+    def slowest(self) -> tuple[Mode, ...]:
+        """The modes that decay slowest, or grow fastest; more than one where rounding cannot tell them apart."""
+        least = min(mode.decay_rate for mode in self.modes)
+        return tuple(mode for mode in self.modes if mode.decay_rate <= least + ALIKE * abs(least))
 
     @property
     def stable(self) -> bool:
@@ -232,10 +233,11 @@ def _mode(
     shape = orthonormal[:, values > ALIKE * values[0]]
     weight = np.sum(np.abs(shape.reshape(robots, 2, -1)) ** 2, axis=(1, 2)) / shape.shape[1]
     on_graph = np.kron(formation.laplacian, np.eye(2)) @ shape
+    mean = float(np.sum(shape.conj() * on_graph).real) / shape.shape[1]
     return Mode(
         eigenvalue=eigenvalue,
         count=vectors.shape[1],
-        laplacian_eigenvalue=max(float(np.sum(shape.conj() * on_graph).real) / shape.shape[1], 0.0),
+        laplacian_eigenvalue=mean if mean > ROUNDING * np.abs(formation.laplacian).max() else 0.0,
         decoupled=decoupled,
         shares={name: _share(part, shape) for name, part in basis.items()},
         robots=weight,

@@ -1,0 +1,75 @@
+"""The terminal report says what the certificate holds."""
+
+import io
+import re
+
+import pytest
+from rich.console import Console
+
+from drake_formation import load_scenario
+from drake_formation.analysis import Questions, certify
+from drake_formation.analysis.report import MOST_ROWS, report
+
+UNSTABLE = {
+    "tracking.Q": [1.0, 1.0, 1e4, 1.0],
+    "tracking.R": [[1.0, 0.9], [0.9, 1.0]],
+    "formation.heading": 150.0,
+    "springs.stiffness": 3e4,
+}
+
+
+def printed(name, questions=None, width=130, **overrides):
+    text = io.StringIO()
+    found = certify(load_scenario(name, overrides=overrides), questions=questions)
+    Console(width=width, file=text).print(report(found))
+    return " ".join(text.getvalue().split())
+
+
+def test_a_stable_loop_is_called_stable_with_its_slowest_motion():
+    text = printed("line", **{"springs.stiffness": 3e4, "consensus.delta": 1e4})
+    assert "stable: yes." in text
+    assert "(centre, rotation, stretch) decays at 0.1125 1/s" in text
+    assert "after 34.77 s" in text
+    assert "Consensus cannot move: centre." in text
+    assert "(0, inf) 65.8°" in text
+    assert "leave the rotation to consensus" in text
+    assert "younger than 0.9 ms" in text
+    assert "Not covered" in text
+
+
+def test_an_unstable_loop_is_called_unstable_with_what_to_try():
+    text = printed("line", **UNSTABLE)
+    assert "stable: no." in text
+    assert "rotation grows at 0.5153 1/s" in text
+    assert "--set consensus.delta_v=" in text
+    assert "never" in text
+    assert "No answer" in text
+
+
+def test_a_request_out_of_reach_is_answered_in_words():
+    text = printed("line", questions=Questions(decay_rate=0.2))
+    assert "For a decay rate 0.2 1/s: no δ does" in text
+
+
+def test_the_papers_law_is_told_from_real_springs():
+    assert "also resists a rotation, with 60000 N/m" in printed(
+        "line", **{"springs.law": "linear", "springs.stiffness": 3e4}
+    )
+
+
+def test_many_modes_are_summed_up_by_kind():
+    text = printed(
+        "octagon",
+        **{
+            "formation": {"shape": "polygon", "robots": 12, "side": 1.0},
+            "robots": {"start": {"centre": [0, 0]}, "mass": [float(mass) for mass in range(30, 42)]},
+        },
+    )
+    count = re.search(r"stretch, (\d+) modes", text)
+    assert count is not None
+    assert int(count[1]) > MOST_ROWS
+
+
+@pytest.mark.parametrize("width", [60, 100])
+def test_a_narrow_terminal_gets_the_whole_verdict(width):
+    assert "after 34.77 s" in printed("line", width=width)

@@ -59,6 +59,24 @@ class OpenChannels:
         self._values[self._places] = forces.ravel()
         return self._compiled.derivatives(0.0, state, self._values)
 
+    def held_period(self, state, heard, arrives, lost, period, steps=4):
+        """The state (4N,) a sampling period later, and what was heard last, (channels, 4); forces are held.
+
+        Of the channels for which ``arrives`` is not true, the term is left out (``zero``) or uses ``heard`` (``hold``).
+        """
+        sent = state.reshape(-1, 4)
+        heard = np.where(arrives[:, None], sent[self.of], heard)
+        pulls = self.channel_forces(sent[self.to], heard)
+        forces = self.forces(pulls if lost == "hold" else np.where(arrives[:, None], pulls, 0.0))
+        h = period / steps
+        for _ in range(steps):
+            first = self.derivatives(state, forces)
+            second = self.derivatives(state + h / 2 * first, forces)
+            third = self.derivatives(state + h / 2 * second, forces)
+            fourth = self.derivatives(state + h * third, forces)
+            state = state + h / 6 * (first + 2 * second + 2 * third + fourth)
+        return state, heard
+
 
 def _without_consensus(scenario):
     parameters = block_parameters(scenario)

@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from drake_formation.analysis.agreement import require_agreement
 from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.linearization import STATES, LinearFormation
 from drake_formation.scenario import derive
@@ -115,7 +116,8 @@ def distributed_lqr(
             asks for.
 
     Raises:
-        IllPosedError: one robot, robots of different mass, Q₂ or a that is none, or no stable gain without springs.
+        IllPosedError: one robot, a graph that is not connected, robots of different mass, Q₂ or a that is none, or no
+            stable gain without springs.
     """
     plant, force = _plant(formation)
     masses, tracking = derive.masses(formation.scenario), formation.scenario.tracking
@@ -173,8 +175,7 @@ def relative_cost_of(formation: LinearFormation, delta: float) -> Array:
 def _plant(formation: LinearFormation) -> tuple[Array, Array]:
     """A and B of the one robot that all are, off the linearized diagram."""
     masses = derive.masses(formation.scenario)
-    if formation.robots < 2:
-        raise IllPosedError("one robot has no neighbour; a distributed LQR takes two robots or more")
+    require_agreement(formation, "relative gain to design")
     if np.ptp(masses) > 0:
         raise IllPosedError(
             f"a distributed LQR is for identical robots; robots.mass runs from {masses.min():g} to {masses.max():g} kg"

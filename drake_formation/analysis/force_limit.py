@@ -7,6 +7,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from drake_formation.analysis.agreement import require_agreement
 from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.force_map import ForceMap, force_map
 from drake_formation.analysis.linearization import STATES, LinearFormation
@@ -81,10 +82,10 @@ def largest_gain(
         delta_v: velocity consensus gain (N s/m); the scenario's if not given.
 
     Raises:
-        IllPosedError: one robot, a limit or an error that is not positive, an unstable loop, or a limit that is
-            exceeded without any consensus.
+        IllPosedError: one robot, a graph that is not connected, a limit or an error that is not positive, an unstable
+            loop, or a limit that is exceeded without any consensus.
     """
-    require_question(formation.robots, force_limit_n)
+    require_question(formation, force_limit_n)
     require_distances(hand_off_error_m, travel_m)
     if hand_off_error_m == 0:
         raise IllPosedError(
@@ -123,10 +124,9 @@ def largest_gain(
     )
 
 
-def require_question(robots: int, force_limit_n: float) -> None:
-    """Refuse a question about one robot, or with a limit that is none."""
-    if robots < 2:
-        raise IllPosedError("one robot has no consensus to limit; a largest δ takes two robots or more")
+def require_question(formation: LinearFormation, force_limit_n: float) -> None:
+    """Refuse a question about robots that cannot agree, or with a limit that is none."""
+    require_agreement(formation, "consensus gain to limit")
     if not (np.isfinite(force_limit_n) and force_limit_n > 0):
         raise IllPosedError(f"a force limit is above 0 N; {force_limit_n:g} N is none")
 

@@ -86,13 +86,15 @@ class HandOffCost:
     def _through_the_diagram(self) -> tuple[Array, Array]:
         """C at the scenario's gains and its derivatives by them."""
         diagram, size = AutoDiffFormation(self.formation), STATES * self.formation.robots
-        diagram.set_gains(InitializeAutoDiff([self.formation.delta, self.formation.delta_v]).ravel())
+        gains = InitializeAutoDiff([self.formation.delta, self.formation.delta_v]).ravel()
+        diagram.set_gains(gains)
         values, gradients = [], []
         for deviation in np.eye(size):
             diagram.set_deviation(deviation)
             forces = diagram.forces()
             values.append(ExtractValue(forces).ravel())
-            gradients.append(ExtractGradient(forces))
+            # Where nobody talks no force depends on the gains, and none has derivatives.
+            gradients.append(ExtractGradient(np.append(forces, gains))[: len(forces)])
         return np.stack(values, axis=-1), np.stack(gradients, axis=-1).transpose(1, 0, 2)
 
     def _outputs(self, delta: float, delta_v: float) -> Array:

@@ -112,11 +112,12 @@ def own_largest_gain(scenario: Scenario, *, force_limit_n: float, aggregation: b
 
     Raises:
         ScenarioError: the scenario is wrong.
-        IllPosedError: one robot, no positive limit, a trajectory for a reference, an unstable loop, a limit that is
-            exceeded without consensus, or one that no δ exceeds since the run has no consensus error.
+        IllPosedError: one robot, a graph that is not connected, no positive limit, a trajectory for a reference, an
+            unstable loop, a limit that is exceeded without consensus, or one that no δ exceeds since the run has no
+            consensus error.
     """
     formation = linearize(scenario)
-    require_question(formation.robots, force_limit_n)
+    require_question(formation, force_limit_n)
     forces = force_map(formation)
 
     def own(delta: float) -> OwnForce:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pydrake.autodiffutils import AutoDiffXd, ExtractGradient, ExtractValue
 from pydrake.solvers import MathematicalProgram, Solve
 
+from drake_formation.analysis.agreement import require_agreement
 from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.hand_off_cost import HAND_OFF_ERROR, HandOffCost
 from drake_formation.analysis.linearization import STATES, LinearFormation
@@ -88,7 +89,8 @@ def tune(
         costs: error and effort of this formation, where they are at hand already.
 
     Raises:
-        IllPosedError: one robot, a weight or a bound that is not positive, an unstable loop, or no convergence.
+        IllPosedError: one robot, a graph that is not connected, a weight or a bound that is not positive, an unstable
+            loop, or no convergence.
     """
     _require_question(formation, effort_weight, largest_delta, largest_delta_v, hand_off_error_m)
     costs = costs or HandOffCost(formation, hand_off_error_m)
@@ -164,8 +166,7 @@ def _typical(formation: LinearFormation) -> tuple[float, float, float, float]:
 
 
 def _require_question(formation: LinearFormation, weight: float, delta: float, delta_v: float, error: float) -> None:
-    if formation.robots < 2:
-        raise IllPosedError("one robot has no consensus to tune; it takes two robots or more")
+    require_agreement(formation, "consensus gain to tune")
     named = {"effort_weight": weight, "largest_delta": delta, "largest_delta_v": delta_v, "hand_off_error_m": error}
     for name, value in named.items():
         if not (np.isfinite(value) and value > 0):

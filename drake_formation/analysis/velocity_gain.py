@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from drake_formation.analysis.agreement import require_agreement
 from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.force_bound import require_stable
 from drake_formation.analysis.linearization import LinearFormation
@@ -93,11 +94,10 @@ def velocity_gain(formation: LinearFormation, *, damping_ratio: float, delta: fl
         delta: δ (N/m); the scenario's if not given.
 
     Raises:
-        IllPosedError: one robot, a damping ratio that is none, an unstable loop, or modes that damping mixes so that
-            no δ_v gives this one the ratio.
+        IllPosedError: one robot, a graph that is not connected, a damping ratio that is none, an unstable loop, or
+            modes that damping mixes so that no δ_v gives this one the ratio.
     """
-    if formation.robots < 2:
-        raise IllPosedError("one robot has no consensus mode to damp; it takes two robots or more")
+    require_agreement(formation, "consensus mode to damp")
     if not (np.isfinite(damping_ratio) and damping_ratio > 0):
         raise IllPosedError(f"a damping ratio is above 0 and finite; {damping_ratio:g} is not")
     delta = formation.delta if delta is None else delta

@@ -150,7 +150,7 @@ def analyze(
     topology: Annotated[float | None, typer.Option(help="Find the fewest channels for this error (m).")] = None,
 ) -> None:
     """Certify a scenario before it is simulated: stability, modes, margins and what disturbances do."""
-    from drake_formation.analysis import Questions, certify
+    from drake_formation.analysis import IllPosedError, Questions, certify
     from drake_formation.analysis.report import report
     from drake_formation.analysis_output import require_certificate_place, write_certificate
     from drake_formation.output import OutputError
@@ -165,7 +165,7 @@ def analyze(
                 resolved, questions=asked, progress=lambda part: status.update(part.replace("_", " "))
             )
             figures = write_certificate(out, certificate) if out else []
-    except (OutputError, ValueError) as error:
+    except (OutputError, IllPosedError) as error:
         _stop(str(error), WRONG_INPUT)
     console.print(report(certificate))
     if out:

@@ -50,13 +50,13 @@ class Questions:
         """Refuse what cannot be asked.
 
         Raises:
-            ValueError: a value is not finite and above 0, or a damping ratio is above 1.
+            IllPosedError: a value is not finite and above 0, or a damping ratio is above 1.
         """
         for name, value in vars(self).items():
             if value is not None and not 0 < value < float("inf"):
-                raise ValueError(f"{name.replace('_', ' ')} is {value:g}; allowed: finite and above 0")
+                raise IllPosedError(f"{name.replace('_', ' ')} is {value:g}; allowed: finite and above 0")
         if self.damping_ratio is not None and self.damping_ratio > 1:
-            raise ValueError(f"damping ratio is {self.damping_ratio:g}; allowed: above 0 and at most 1")
+            raise IllPosedError(f"damping ratio is {self.damping_ratio:g}; allowed: above 0 and at most 1")
 
 
 @dataclass(frozen=True)

@@ -98,8 +98,8 @@ def spring_linearization(formation: LinearFormation) -> SpringLinearization:
         linear=linear,
         exact_free=_nullity(exact),
         linear_free=_nullity(linear),
-        exact_rotation=float(turning @ exact @ turning),
-        linear_rotation=float(turning @ linear @ turning),
+        exact_rotation=_along(turning, exact),
+        linear_rotation=_along(turning, linear),
     )
 
 
@@ -127,6 +127,12 @@ def stiff_springs(formation: LinearFormation) -> list[Edge]:
 def _nullity(stiffness: Array) -> int:
     values = np.linalg.eigvalsh(stiffness)
     return int(np.sum(values <= ROUNDING * values[-1]))
+
+
+def _along(direction: Array, stiffness: Array) -> float:
+    """Stiffness along a direction of unit length (N/m); what rounding leaves of a zero is zero."""
+    value = float(direction @ stiffness @ direction)
+    return value if value > ROUNDING * np.abs(stiffness).max() else 0.0
 
 
 def _stiffness(scenario: Scenario, law: str) -> Array:

@@ -127,7 +127,7 @@ def test_what_is_asked_is_answered():
     ],
 )
 def test_what_cannot_be_asked_is_refused(asked):
-    with pytest.raises(ValueError, match="allowed"):
+    with pytest.raises(IllPosedError, match="allowed"):
         Questions(**asked)
 
 

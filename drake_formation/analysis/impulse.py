@@ -53,7 +53,21 @@ def impulse_peaks(system: StateSpace, *, tolerance: float = 1e-3) -> ImpulsePeak
         IllPosedError: the system is not stable.
     """
     require_stable(system.A)
-    return _Search(system, tolerance).run()
+    return _Search(_seen_part(system), tolerance).run()
+
+
+def _seen_part(system: StateSpace) -> StateSpace:
+    """The system without motions that neither show nor lead to any that do: equal robots moving all alike.
+
+    However large they are, they must not blur the bound on the others.
+    """
+    shown = np.vstack([system.C, system.C @ system.A])
+    _, sizes, directions = np.linalg.svd(shown)
+    rank = int(np.count_nonzero(sizes > 1e-10 * sizes[0]))
+    seen, unseen = directions[:rank].T, directions[rank:].T
+    if np.abs(seen.T @ system.A @ unseen).max(initial=0.0) > 1e-10 * np.abs(system.A).max():
+        return system
+    return StateSpace(seen.T @ system.A @ seen, seen.T @ system.B, system.C @ seen)
 
 
 def block_norms(matrices: Array) -> Array:

@@ -105,6 +105,16 @@ def test_fast_and_slow_modes_together():
     np.testing.assert_allclose(peaks.time, time, rtol=0.1)
 
 
+def test_what_is_not_seen_does_not_blur_what_is():
+    """A huge common motion of two equal masses, and a small relative one."""
+    one, (value, _) = oscillators((2.0, 0.1), (2.0, 0.1)), peak_of(2.0, 0.1)
+    ways = np.array([[1.0, -1e-6], [1.0, 1e-6]])
+    together = StateSpace(np.kron(np.eye(2), one.A), 1e8 * np.kron(ways, one.B)[:, :2], np.kron([[0.5, -0.5]], one.C))
+    assert impulse_peaks(together).bound[0] <= 1e-6 * value
+    apart = StateSpace(together.A, np.kron(ways, one.B)[:, 2:], together.C)
+    np.testing.assert_allclose(impulse_peaks(apart).bound, 1e-6 * value, rtol=2e-3)
+
+
 def test_an_unstable_system_is_refused():
     with pytest.raises(IllPosedError, match="not asymptotically stable"):
         impulse_peaks(oscillators((1.0, 0.1), (1.0, -0.1)))

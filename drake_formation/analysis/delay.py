@@ -18,9 +18,10 @@ margin is d/δ whatever N, 0.9 ms and 0.45 ms. But now common motion, too, is co
 late.
 
 Damping is what buys margin. With δ_v for a damping ratio of 0.7 of the relative motion the phase lag tolerated is about
-a radian instead of a hundredth, the margin tens of milliseconds. Only here do the kinds part altogether: with enough
-δ_v a robot's own damping outweighs all that its neighbours can do late, and neighbour-only delay of any length is
-harmless; relative delay never is, unless consensus is weaker than the local LQR.
+a radian instead of a hundredth, the margin tens of milliseconds. Too much of it costs again: relative velocities are
+then integrators in consensus, stable until π m/(2 λ δ_v). Only here do the kinds part altogether: with enough δ_v a
+robot's own damping outweighs all that its neighbours can do late, and neighbour-only delay of any length is harmless;
+relative delay never is, unless consensus is weaker than the local LQR.
 """
 
 from dataclasses import dataclass
@@ -39,6 +40,9 @@ Array = NDArray[np.float64]
 
 Delayed = Literal["neighbour", "relative"]
 """What is delayed: the neighbours' states, or the robots' whole difference to them."""
+
+SAME_DIGITS = 12
+"""Blocks that agree to so many digits are one."""
 
 LITTLE_LAG = 0.1
 """Phase lag (rad) below which a margin is one of damping only: the virtual springs are hardly damped."""
@@ -144,6 +148,13 @@ def _first_crossing(present: Array, delayed: Array, masses: Array) -> Crossing |
     """The least over all blocks, the small ones first: what they find spares the large ones much of the search."""
     require_stable(present + delayed)
     best: Crossing | None = None
-    for part in sorted(blocks([present, delayed], masses), key=lambda part: len(part[0])):
+    for part in _distinct(blocks([present, delayed], masses)):
         best = least([best, first_crossing(part[0], part[1], best.delay if best else np.inf)])
     return best
+
+
+def _distinct(parts: list[tuple[Array, ...]]) -> list[tuple[Array, ...]]:
+    """Blocks without repetition, small ones first: identical robots have modes many times over."""
+    size = max(np.abs(matrix).max() for part in parts for matrix in part)
+    found = {(np.round(np.hstack(part) / size, SAME_DIGITS) + 0.0).tobytes(): part for part in parts}
+    return sorted(found.values(), key=lambda part: len(part[0]))

@@ -21,6 +21,9 @@ root only touches the axis, is computed to half the digits."""
 ON_AXIS = 1e-10
 """Real part of a root, relative to the size of the matrices, that is zero."""
 
+ROUNDING = 4 * np.finfo(float).eps
+"""The same, as near to zero as it can be computed."""
+
 AT_REST = 1e-8
 """Frequency, relative to the size of the matrices, that is zero."""
 
@@ -157,11 +160,9 @@ def followed(present: Array, delayed: Array, phase: float, value: complex, steps
         if abs(values[k].real) < nearest:
             nearest, best = abs(values[k].real), (phase, float(values[k].imag), vectors[:, k])
         rate = np.linalg.solve(vectors, -1j * z * (delayed @ vectors[:, k]))[k]
-        if nearest == 0 or rate.real == 0:
+        if nearest <= ROUNDING * size or rate.real == 0:
             break
         step = float(np.clip(-values[k].real / rate.real, -LONGEST_STEP, LONGEST_STEP))
-        if abs(step) <= 1e-15 * abs(phase):
-            break
         phase, value = phase + step, values[k] + rate * step
     return crossing(*best, AT_REST * size) if best is not None and nearest <= ON_AXIS * size else None
 

@@ -81,6 +81,12 @@ def test_enough_velocity_consensus_outweighs_whatever_the_neighbours_say_late():
     assert delay_margin(loop, of="relative", delta=delta, delta_v=1.01 * enough).delay_s is not None
 
 
+def test_too_much_velocity_consensus_is_single_integrators_in_consensus_again():
+    loop = polygon(4, springs__stiffness=0.0)
+    margin = delay_margin(loop, of="relative", delta=1.0, delta_v=1e5)
+    assert margin.delay_s == pytest.approx(np.pi * 40 / (2 * 4 * 1e5), rel=1e-3)
+
+
 def test_weak_consensus_tolerates_every_delay():
     """While λ (δ² + ω² δ_v²)^½ stays below what the local LQR resists with, at any frequency."""
     loop = polygon(3, springs__stiffness=0.0)

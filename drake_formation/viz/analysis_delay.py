@@ -1,0 +1,100 @@
+"""Figure of the delay margin: how it falls with δ, what δ_v buys, and how the two kinds of delay differ."""
+
+from collections.abc import Sequence
+from typing import Literal, get_args
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from drake_formation.analysis.delay import Delayed, delay_margin
+from drake_formation.analysis.linearization import LinearFormation
+
+Array = NDArray[np.float64]
+
+VELOCITY_GAINS = (0.0, 100.0, 1000.0)
+"""δ_v drawn beside the scenario's own (N s/m)."""
+
+SMALLEST_DELTA = 1.0
+"""Where δ begins (N/m): about the local LQR's own stiffness."""
+
+LARGEST_DELTA = 2e4
+"""δ goes at least to the largest of the paper's gains (N/m)."""
+
+VALUES = 41
+"""Values of δ."""
+
+STYLES: dict[Delayed, Literal["-", "--"]] = {"neighbour": "--", "relative": "-"}
+LABELS: dict[Delayed, str] = {"neighbour": "neighbours' states late", "relative": "the whole difference late"}
+
+
+def delay_margin_against_delta(
+    formation: LinearFormation, *, deltas: Sequence[float] | None = None, velocity_gains: Sequence[float] | None = None
+) -> Figure:
+    """The delay margin against δ, for delayed neighbours and for the whole difference delayed, at several δ_v.
+
+    Where a line is missing every delay is tolerated; where it jumps, another mode has become the critical one. Rings
+    mark the scenario's own gains.
+
+    Args:
+        formation: the linearized closed loop.
+        deltas: consensus gains δ (N/m), positive and ascending.
+        velocity_gains: velocity consensus gains δ_v (N s/m).
+
+    Raises:
+        IllPosedError: there is one robot, or the loop is unstable without delay.
+    """
+    if deltas is None:
+        deltas = np.geomspace(SMALLEST_DELTA, max(LARGEST_DELTA, 2 * formation.delta), VALUES).tolist()
+    if velocity_gains is None:
+        velocity_gains = sorted({*VELOCITY_GAINS, formation.delta_v})
+    figure = Figure(figsize=(9, 5), layout="constrained")
+    axes = figure.subplots()
+    colours = [to_hex(colormaps["viridis"](shade)) for shade in np.linspace(0, 0.85, len(velocity_gains))]
+    for delta_v, colour in zip(velocity_gains, colours, strict=True):
+        for of in get_args(Delayed):
+            axes.plot(deltas, margins(formation, of, deltas, delta_v), STYLES[of], color=colour, linewidth=1.5)
+    _mark_own(axes, formation)
+    axes.set(xscale="log", yscale="log", xlabel="consensus gain δ (N/m)", ylabel="delay margin τ* (ms)")
+    axes.set_title(f"{formation.scenario.name}: delay margin")
+    axes.set_xlim(deltas[0], deltas[-1])
+    axes.grid(alpha=0.3)
+    _legend(axes, velocity_gains, colours)
+    return figure
+
+
+def margins(formation: LinearFormation, of: Delayed, deltas: Sequence[float], delta_v: float) -> Array:
+    """Delay margins (ms) for several δ (N/m); not a number where every delay is tolerated."""
+    found = (delay_margin(formation, of=of, delta=delta, delta_v=delta_v).delay_s for delta in deltas)
+    return np.array([np.nan if delay is None else 1e3 * delay for delay in found])
+
+
+def _mark_own(axes: Axes, formation: LinearFormation) -> None:
+    if formation.delta == 0:
+        return
+    for of in get_args(Delayed):
+        (own,) = margins(formation, of, [formation.delta], formation.delta_v)
+        axes.plot([formation.delta], [own], "o", color="black", fillstyle="none", markersize=9, zorder=4)
+
+
+def _legend(axes: Axes, velocity_gains: Sequence[float], colours: Sequence[str]) -> None:
+    entries = [Line2D([], [], color="0.3", linestyle=STYLES[of], label=LABELS[of]) for of in get_args(Delayed)]
+    for delta_v, colour in zip(velocity_gains, colours, strict=True):
+        entries.append(Line2D([], [], color=colour, linewidth=4, label=f"δ_v = {delta_v:g} N s/m"))
+    if len(axes.lines) > 2 * len(velocity_gains):
+        entries.append(
+            Line2D([], [], color="black", marker="o", fillstyle="none", linestyle="", label="the scenario's gains")
+        )
+    axes.legend(
+        handles=entries,
+        title="a missing line: any delay is tolerated",
+        title_fontsize="small",
+        fontsize="small",
+        frameon=False,
+        loc="upper left",
+        bbox_to_anchor=(1.0, 1.0),
+    )

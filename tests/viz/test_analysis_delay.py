@@ -1,0 +1,61 @@
+"""The figure of the delay margin shows the margins."""
+
+import numpy as np
+import pytest
+
+from drake_formation import load_scenario
+from drake_formation.analysis import linearize
+from drake_formation.analysis.delay import delay_margin
+from drake_formation.analysis.errors import IllPosedError
+from drake_formation.viz.analysis_delay import delay_margin_against_delta
+
+DELTAS = [0.1, 10.0, 1e3]
+
+
+@pytest.fixture(scope="module")
+def formation():
+    return linearize(load_scenario("line", overrides={"consensus.delta": 1e3, "consensus.delta_v": 50.0}))
+
+
+@pytest.fixture(scope="module")
+def axes(formation):
+    return delay_margin_against_delta(formation, deltas=DELTAS, velocity_gains=[0.0, 50.0]).axes[0]
+
+
+def test_lines_are_the_margins(formation, axes):
+    expected = [
+        [delay_margin(formation, of=of, delta=delta, delta_v=delta_v).delay_s for delta in DELTAS]
+        for delta_v in (0.0, 50.0)
+        for of in ("neighbour", "relative")
+    ]
+    for line, delays in zip(axes.lines, expected, strict=False):
+        np.testing.assert_array_equal(line.get_xdata(), DELTAS)
+        np.testing.assert_allclose(line.get_ydata(), 1e3 * np.array(delays, dtype=float))
+
+
+def test_where_every_delay_is_tolerated_there_is_no_line(axes):
+    assert np.isnan(axes.lines[1].get_ydata()[0])
+
+
+def test_rings_mark_the_scenarios_own_gains(formation, axes):
+    for ring, of in zip(axes.lines[4:], ("neighbour", "relative"), strict=True):
+        assert ring.get_xdata()[0] == 1e3
+        assert ring.get_ydata()[0] == pytest.approx(1e3 * delay_margin(formation, of=of).delay_s)
+
+
+def test_axes_are_logarithmic_and_have_units(axes):
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+    assert "(N/m)" in axes.get_xlabel()
+    assert "(ms)" in axes.get_ylabel()
+
+
+def test_by_default_the_papers_gains_and_the_scenarios_are_drawn(formation):
+    axes = delay_margin_against_delta(formation).axes[0]
+    assert axes.get_xlim()[1] >= 2e4
+    assert len(axes.lines) == 2 * 4 + 2
+
+
+def test_one_robot_is_refused():
+    alone = {"formation": {"shape": "line", "robots": 1, "side": 1.0}, "robots.start": {"centre": [0.0, 0.0]}}
+    with pytest.raises(IllPosedError):
+        delay_margin_against_delta(linearize(load_scenario("line", overrides=alone)))

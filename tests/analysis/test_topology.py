@@ -71,14 +71,15 @@ def test_front_is_that_of_brute_force(law, measure):
 
 
 def test_unequal_robots_are_told_apart():
-    """The heavy robot may take any place in the graph: all 38 numbered graphs are tried."""
+    """The light robot may take any place in the graph: of the 38 numbered graphs 11 differ, more than the 6 shapes."""
     formation = formation_of(robots__mass=[40.0, 40.0, 40.0, 5.0], springs__law="linear")
     front = pareto_front(formation, measure=ForceNoise())
     complete = on_complete_graph(formation)
     everything = connected_graphs(4, [tuple(range(4))])
-    assert len(front.tried) == sum(map(len, everything.values())) == 38
+    assert len(front.tried) == 11
     for point, candidates in zip(front.points, everything.values(), strict=True):
-        assert point.error_m == min(ForceNoise().error_m(on_graph(complete, graph)) for graph in candidates)
+        least = min(ForceNoise().error_m(on_graph(complete, graph)) for graph in candidates)
+        assert point.error_m == pytest.approx(least, rel=1e-9)
     # The light robot is moved most, so it is the one that everybody talks with.
     assert all(4 in edge for edge in front.points[0].edges)
 

@@ -75,12 +75,12 @@ def set_parameters(diagram: Diagram, context: Context, scenario: Scenario) -> No
             "graphs, spring law, sensing, number of obstacles, pieces of the reference and time of the hand-off must "
             "be alike, or the diagram built anew"
         )
-    write_parameters(diagram, context, scenario)
+    write_parameters(diagram, context, block_parameters(scenario))
 
 
-def write_parameters(diagram: Diagram, context: Context, scenario: Scenario) -> None:
-    """Write a sound scenario's numbers into a Context of a diagram that is known to have its structure."""
-    for path, values in block_parameters(scenario).items():
+def write_parameters(diagram: Diagram, context: Context, parameters: Parameters) -> None:
+    """Write numbers into a Context of a diagram that is known to have their blocks."""
+    for path, values in parameters.items():
         block_context = find_block(diagram, path).GetMyMutableContextFromRoot(context)
         for index, value in enumerate(values):
             block_context.get_mutable_numeric_parameter(index).SetFromVector(np.ravel(value))
@@ -94,11 +94,16 @@ def find_block(diagram: Diagram, path: str) -> Any:
     return block
 
 
-def structure(scenario: Scenario) -> dict[str, Any]:
-    """What a diagram of this scenario is made of: the hand-off, each block's parameter sizes, neighbours and law."""
+def structure(scenario: Scenario, parameters: Parameters | None = None) -> dict[str, Any]:
+    """What a diagram of this scenario is made of: the hand-off, each block's parameter sizes, neighbours and law.
+
+    Args:
+        scenario: a sound scenario.
+        parameters: its numbers, where they are known already.
+    """
     springs, talks = derive.spring_graph(scenario), derive.communication_graph(scenario)
     result: dict[str, Any] = {"phase": derive.hand_off_time(scenario) if scenario.aggregation.duration else None}
-    for path, values in block_parameters(scenario).items():
+    for path, values in (parameters or block_parameters(scenario)).items():
         result[path] = [np.size(value) for value in values]
     for i in range(derive.robot_count(scenario.formation)):
         ports = [f"spring_{j + 1}" for j in graphs.neighbours(springs, i)]

@@ -3,6 +3,8 @@
 Every function takes a scenario that has passed :mod:`drake_formation.scenario.checks`.
 """
 
+import functools
+
 import networkx as nx
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -74,11 +76,12 @@ def aggregation_centre(scenario: Scenario) -> Array:
     return centre
 
 
+@functools.lru_cache(maxsize=256)
 def graph(topology: str | tuple[tuple[int, int], ...], robots: int) -> nx.Graph:
-    """A scenario's graph (robots numbered from 1) as a graph on 0 … N-1."""
+    """A scenario's graph (robots numbered from 1) as a graph on 0 … N-1, which is shared and cannot be changed."""
     if isinstance(topology, str):
-        return graphs.graph(topology, robots)
-    return graphs.graph([(i - 1, j - 1) for i, j in topology], robots)
+        return nx.freeze(graphs.graph(topology, robots))
+    return nx.freeze(graphs.graph([(i - 1, j - 1) for i, j in topology], robots))
 
 
 def spring_graph(scenario: Scenario) -> nx.Graph:

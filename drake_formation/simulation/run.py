@@ -7,8 +7,8 @@ import xarray as xr
 from pydrake.systems.framework import Context
 
 from drake_formation.diagram import build_diagram
-from drake_formation.parameters import set_parameters, structure, write_parameters
-from drake_formation.scenario import Scenario, derive
+from drake_formation.parameters import block_parameters, structure, write_parameters
+from drake_formation.scenario import Scenario, derive, require_sound
 from drake_formation.simulation.engines import ENGINES, Engine
 from drake_formation.simulation.recorder import NonFiniteStateError, Recording
 from drake_formation.simulation.result import labelled_result
@@ -106,7 +106,7 @@ class PreparedRun:
         if at_hand_off is None:
             return time_series(scenario, run.recording, run.recording)
 
-        write_parameters(self.diagram, at_hand_off, without_obstacles(scenario))
+        write_parameters(self.diagram, at_hand_off, block_parameters(without_obstacles(scenario)))
         nominal = self._start(
             scenario, at_hand_off, progress and (lambda time: progress(end - begin + time - hand_off))
         )
@@ -119,8 +119,12 @@ class PreparedRun:
         return series
 
     def _initial_context(self, scenario: Scenario) -> Context:
+        require_sound(scenario)
+        parameters = block_parameters(scenario)
+        if structure(scenario, parameters) != self.structure:
+            raise ValueError(f"scenario {scenario.name!r} has another structure than the diagram made ready")
         context = self.diagram.CreateDefaultContext()
-        set_parameters(self.diagram, context, scenario)
+        write_parameters(self.diagram, context, parameters)
         starts = derive.starts(scenario)
         context.SetContinuousState(np.hstack([starts, np.zeros_like(starts)]).ravel())
         return context

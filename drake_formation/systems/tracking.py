@@ -1,5 +1,6 @@
 """The local controller of one robot: LQR about its reference (paper, Eqs. 9-12)."""
 
+import functools
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from pydrake.systems.scalar_conversion import TemplateSystem
 from drake_formation.systems.scalars import Scalar
 
 Array = NDArray[np.float64]
+Rows = tuple[tuple[float, ...], ...]
 
 
 def robot_matrices(mass: float) -> tuple[Array, Array]:
@@ -33,7 +35,14 @@ def lqr_gain(mass: float, state_cost: ArrayLike, input_cost: ArrayLike) -> Array
     Returns:
         K_l, shape (2, 4), in N/m and N s/m.
     """
-    gain, _ = LinearQuadraticRegulator(*robot_matrices(mass), np.asarray(state_cost), np.asarray(input_cost))
+    costs = (np.asarray(cost, dtype=float) for cost in (state_cost, input_cost))
+    return np.array(_known_gain(float(mass), *(tuple(map(tuple, cost.tolist())) for cost in costs)))
+
+
+@functools.lru_cache(maxsize=1024)
+def _known_gain(mass: float, state_cost: Rows, input_cost: Rows) -> Array:
+    """A gain for all robots that are alike, and for all runs of them."""
+    gain, _ = LinearQuadraticRegulator(*robot_matrices(mass), np.array(state_cost), np.array(input_cost))
     return np.asarray(gain)
 
 

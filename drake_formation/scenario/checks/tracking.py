@@ -1,5 +1,6 @@
 """LQR weights: whether they give a gain that brings every robot to its set point."""
 
+import functools
 from collections.abc import Iterator
 from typing import Any
 
@@ -64,17 +65,19 @@ def _matrix(path: Path, value: Any, size: int, allowed: str) -> Iterator[Fault]:
 
 def _gain(scenario: Scenario) -> Iterator[Fault]:
     """Weights that are sound one by one may still be too far apart for Drake to solve (paper, Eq. 12)."""
-    state, cost = derive.cost_matrix(scenario.tracking.Q, 4), derive.cost_matrix(scenario.tracking.R, 2)
+    weights = scenario.tracking
     for mass in np.unique(derive.masses(scenario)):
-        if not _stabilizes(float(mass), state, cost):
+        if not _stabilizes(float(mass), weights.Q, weights.R):
             message = f"Drake finds no stabilizing gain for a robot of {mass:g} kg"
             yield Fault(("tracking",), message, allowed="Q, R and masses of less different sizes")
             return
 
 
-def _stabilizes(mass: float, state: Any, cost: Any) -> bool:
+@functools.lru_cache(maxsize=1024)
+def _stabilizes(mass: float, state_cost: Any, input_cost: Any) -> bool:
     from pydrake.systems.controllers import LinearQuadraticRegulator
 
+    state, cost = derive.cost_matrix(state_cost, 4), derive.cost_matrix(input_cost, 2)
     identity, zero = np.eye(2), np.zeros((2, 2))
     a: Any = np.block([[zero, identity], [zero, zero]])
     with np.errstate(all="ignore"):

@@ -4,9 +4,10 @@ Every directed channel carries one packet a period and loses each independently 
 without one decides what a loss is (:data:`~drake_formation.analysis.sampled.Lost`):
 
 * ``zero``: it leaves the term of that channel out, for the period. On average consensus is weaker by 1 − p, and weaker
-  virtual springs need less damping: with δ_v = 0, loss calms the loop. It harms where packets are rare and long: one
-  that does arrive is a blow of δ T per metre (N s/m), and by the next the robots have overshot. Rarer still, and the
-  local LQR alone keeps order.
+  virtual springs need less damping: with δ_v = 0, loss calms the loop. It harms where packets are rare: one that does
+  arrive is a blow of δ T per metre (N s/m) as ever, while the mean damping that takes its energy out has become less.
+  For two robots and short periods the margin is where δ T = 2 (d + 2 (1 − p) δ_v), d the local LQR's damping (N s/m).
+  Rarer still, and the local LQR alone keeps order.
 * ``hold``: it goes on with what it received last, p/(1 − p) periods older on average. Loss is then delay. For virtual
   springs without damping there is as much room as the delay margin leaves: on a complete graph of N robots up to
   p/(1 − p) = N (T*/T − 1)/2, with T* the longest stable period; with two robots p = 1 − T/T*.
@@ -78,7 +79,7 @@ class LossMargin:
         without = "leave its term out" if self.lost == "zero" else "go on with the one before"
         packets = f"packets every {1e3 * self.period_s:.3g} ms, of which robots that miss one {without}"
         if self.probability is None:
-            return f"{packets}, may be lost at any rate: the formation stays stable in mean square"
+            return f"{packets}, may be lost at any rate up to {HIGHEST:.1%}: the formation stays stable in mean square"
         return f"{packets}, may be lost with a probability below {self.probability:.3g}"
 
 

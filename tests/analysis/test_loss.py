@@ -52,6 +52,14 @@ def test_undamped_virtual_springs_do_not_mind_terms_left_out(stiffness):
     assert loss_margin(loop, period_s=0.9 * longest_period(loop)).probability is None
 
 
+@pytest.mark.parametrize(("seconds", "delta_v"), [(0.0025, 600.0), (0.005, 600.0), (0.0025, 300.0)])
+def test_rare_packets_are_blows_that_the_mean_damping_must_take_up(seconds, delta_v):
+    """Two robots as an oscillator whose stiffness is noise: δ T = 2 (d + 2 (1 − p) δ_v)."""
+    arrival = (1e4 * seconds / 2 - 9) / (2 * delta_v)
+    margin = loss_margin(formation(consensus__delta=1e4, consensus__delta_v=delta_v), period_s=seconds)
+    assert 1 - margin.probability == pytest.approx(arrival, rel=0.08)
+
+
 @given(scenario=scenarios(robots=st.just(2)), share=st.floats(0.1, 0.98), lost=st.just("zero") | st.just("hold"))
 @settings(max_examples=15)
 def test_the_second_moment_decays_up_to_the_margin_and_no_further(scenario, share, lost):

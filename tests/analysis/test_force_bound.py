@@ -106,7 +106,17 @@ def test_an_unstable_loop_has_no_peak():
         require_stable(np.diag([-1.0, 0.1]), 1.0, 2.0)
 
 
-def test_a_loop_too_stiff_to_follow_says_so():
-    formation = linearize(load_scenario("line", overrides={"consensus.delta_v": 1e8}))
-    with pytest.raises(IllPosedError, match="smaller δ_v"):
+def test_stiff_loops_are_followed_in_growing_steps():
+    """Relative modes at 500 1/s beside a centre at 0.11 1/s; the first force is δ alone, the last ones are slow."""
+    formation = linearize(load_scenario("line", overrides={"consensus.delta": 1e3, "consensus.delta_v": 1e4}))
+    found, _, _ = worst(formation, np.array([0.01, 0.01, 22.5]))
+    assert found.value == pytest.approx((2 * 1e3 + 1) * 0.01 + 22.5)
+    assert found.bound <= found.value * 1.01
+
+
+@pytest.mark.filterwarnings("ignore:Input .a. has an eigenvalue pair:RuntimeWarning")
+@pytest.mark.parametrize("delta_v", [1e8, 1e12])
+def test_a_loop_too_stiff_to_follow_says_so(delta_v):
+    formation = linearize(load_scenario("line", overrides={"consensus.delta": 1e3, "consensus.delta_v": delta_v}))
+    with pytest.raises(IllPosedError, match="smaller δ or δ_v"):
         worst(formation, np.array([0.01, 0.01, 1.0]))

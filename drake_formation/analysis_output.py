@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 
 CERTIFICATE = "certificate.json"
 
+FEW_ROBOTS = 8
+"""With more robots, error against channels is drawn only where the fewest channels are asked for."""
+
 
 def require_certificate_place(folder: Path) -> None:
     """Make sure that a certificate may be written to a folder.
@@ -26,7 +29,7 @@ def require_certificate_place(folder: Path) -> None:
         raise OutputError(f"{folder}: holds a run, which would be lost; give another folder")
 
 
-def write_certificate(folder: Path, certificate: Certificate) -> list[str]:
+def write_certificate(folder: Path, certificate: Certificate) -> dict[str, str]:
     """Write a certificate, its scenario and its figures.
 
     Args:
@@ -34,7 +37,7 @@ def write_certificate(folder: Path, certificate: Certificate) -> list[str]:
         certificate: from :func:`drake_formation.analysis.certify`.
 
     Returns:
-        Names of the figures, without those that have no answer to draw.
+        Figures that were left out, by name, and why.
 
     Raises:
         OutputError: it cannot be written there.
@@ -44,18 +47,19 @@ def write_certificate(folder: Path, certificate: Certificate) -> list[str]:
         (partial / CERTIFICATE).write_text(certificate.to_json(), encoding="utf-8")
         (partial / SCENARIO).write_text(to_yaml(certificate.scenario), encoding="utf-8")
         (partial / "figures").mkdir()
-        return [
-            name for name, draw in FIGURES.items() if _drawn(partial / "figures" / f"{name}.png", draw, certificate)
-        ]
+        left_out = {}
+        for name, draw in FIGURES.items():
+            try:
+                draw(certificate).savefig(partial / "figures" / f"{name}.png", dpi=150)
+            except IllPosedError as reason:
+                left_out[name] = str(reason)
+        return left_out
 
 
-def _drawn(file: Path, draw: Callable[[Certificate], "Figure"], certificate: Certificate) -> bool:
-    try:
-        figure = draw(certificate)
-    except IllPosedError:
-        return False
-    figure.savefig(file, dpi=150)
-    return True
+def closing(folder: Path, left_out: dict[str, str]) -> str:
+    """Where a certificate is, and which figures it is without."""
+    lines = [f"No figure {figure}: {reason}." for figure, reason in left_out.items()]
+    return "\n".join([*lines, f"Certificate in {folder}, figures in {folder / 'figures'}."])
 
 
 def _mode_map(certificate: Certificate) -> "Figure":
@@ -76,9 +80,26 @@ def _error_against_effort(certificate: Certificate) -> "Figure":
     return pareto_front(certificate.formation)
 
 
+def _delay_margin(certificate: Certificate) -> "Figure":
+    from drake_formation.viz.analysis_delay import delay_margin_against_delta
+
+    return delay_margin_against_delta(certificate.formation)
+
+
+def _error_against_channels(certificate: Certificate) -> "Figure":
+    from drake_formation.analysis.topology import pareto_front
+    from drake_formation.viz.analysis_topology import error_against_channels
+
+    if certificate.formation.robots > FEW_ROBOTS and certificate.questions.consensus_error is None:
+        raise IllPosedError("with so many robots it is drawn only where the fewest channels are asked for")
+    return error_against_channels(pareto_front(certificate.formation))
+
+
 FIGURES: dict[str, Callable[[Certificate], "Figure"]] = {
     "mode_map": _mode_map,
     "root_locus": _root_locus,
+    "delay_margin": _delay_margin,
     "error_against_effort": _error_against_effort,
+    "error_against_channels": _error_against_channels,
 }
 """Every figure of a certificate, by the name of its file."""

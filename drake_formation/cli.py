@@ -152,7 +152,7 @@ def analyze(
     """Certify a scenario before it is simulated: stability, modes, margins and what disturbances do."""
     from drake_formation.analysis import IllPosedError, Questions, certify
     from drake_formation.analysis.report import report
-    from drake_formation.analysis_output import require_certificate_place, write_certificate
+    from drake_formation.analysis_output import closing, require_certificate_place, write_certificate
     from drake_formation.output import OutputError
 
     resolved = load_scenario(scenario, overrides=overrides)
@@ -161,15 +161,13 @@ def analyze(
         if out:
             require_certificate_place(out)
         with Console(stderr=True).status("linearizing") as status:
-            certificate = certify(
-                resolved, questions=asked, progress=lambda part: status.update(part.replace("_", " "))
-            )
-            figures = write_certificate(out, certificate) if out else []
+            certificate = certify(resolved, questions=asked, progress=lambda part: status.update(f"analyzing: {part}"))
+            left_out = write_certificate(out, certificate) if out else {}
     except (OutputError, IllPosedError) as error:
         _stop(str(error), WRONG_INPUT)
     console.print(report(certificate))
     if out:
-        console.print(f"\nCertificate in {out}, figures ({', '.join(figures)}) in {out / 'figures'}.", soft_wrap=True)
+        console.print(closing(out, left_out), soft_wrap=True)
 
 
 @app.command()

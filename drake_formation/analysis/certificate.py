@@ -67,6 +67,7 @@ class Certificate:
         scenario: as given, every default resolved.
         formation: its linearization.
         modes: the modes of the closed loop, stable or not.
+        questions: what it was asked beyond the standard sections.
         sections: answers by name (see ``SECTIONS``), each with a ``to_dict``.
         unanswered: for sections without an answer, why there is none.
     """
@@ -74,6 +75,7 @@ class Certificate:
     scenario: Scenario
     formation: LinearFormation
     modes: Modes
+    questions: Questions = Questions()
     sections: dict[str, Any] = field(default_factory=dict)
     unanswered: dict[str, str] = field(default_factory=dict)
 
@@ -171,7 +173,7 @@ def certify(
         else:
             if result is not None:
                 sections[name] = result
-    return Certificate(scenario, formation, modes(formation), sections, unanswered)
+    return Certificate(scenario, formation, modes(formation), asked, sections, unanswered)
 
 
 def versions() -> dict[str, str]:

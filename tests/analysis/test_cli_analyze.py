@@ -45,7 +45,13 @@ def test_analyze_writes_certificate_scenario_and_figures(cli):
     assert set(told) >= {"modes", "delay_margin_s", "loss_margin", "not_covered", "versions", "units", "scenario"}
     assert load_scenario(folder / "scenario.yaml").consensus.delta == 1e4
     pictures = sorted((folder / "figures").glob("*.png"))
-    assert {"mode_map", "root_locus"} <= {picture.stem for picture in pictures}
+    assert [picture.stem for picture in pictures] == [
+        "delay_margin",
+        "error_against_channels",
+        "error_against_effort",
+        "mode_map",
+        "root_locus",
+    ]
     assert all(picture.read_bytes().startswith(b"\x89PNG") for picture in pictures)
     assert [path.name for path in Path("results").iterdir()] == ["line"]
 
@@ -67,6 +73,7 @@ def test_an_unstable_loop_is_a_certificate_too(cli):
     told = json.loads(Path("o/certificate.json").read_text())
     assert told["stable"] is False
     assert told["unanswered"]
+    assert "No figure delay_margin: " in out
     assert Path("o/figures/mode_map.png").exists()
 
 

@@ -1,0 +1,59 @@
+"""The folder of a certificate: complete, or not there; and never in the place of something else."""
+
+import json
+
+import pytest
+
+from drake_formation import analysis_output, load_scenario
+from drake_formation.analysis import Questions, certify
+from drake_formation.analysis_output import FIGURES, require_certificate_place, write_certificate
+from drake_formation.output import OutputError
+
+
+@pytest.fixture(scope="module")
+def certificate():
+    return certify(load_scenario("line", overrides={"consensus.delta": 1e4}))
+
+
+def test_everything_is_written(certificate, tmp_path):
+    assert write_certificate(tmp_path / "line", certificate) == {}
+    pictures = {path.stem for path in (tmp_path / "line" / "figures").iterdir()}
+    assert pictures == set(FIGURES)
+    assert json.loads((tmp_path / "line" / "certificate.json").read_text()) == json.loads(certificate.to_json())
+
+
+def test_what_fails_on_the_way_leaves_the_earlier_certificate(certificate, tmp_path, monkeypatch):
+    write_certificate(tmp_path / "line", certificate)
+
+    def fails(_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(analysis_output, "FIGURES", {"mode_map": fails})
+    with pytest.raises(KeyboardInterrupt):
+        write_certificate(tmp_path / "line", certify(load_scenario("quadrilateral")))
+    assert json.loads((tmp_path / "line" / "certificate.json").read_text())["name"] == "line"
+    assert [path.name for path in tmp_path.iterdir()] == ["line"]
+
+
+@pytest.mark.parametrize("file", ["result.nc", "thesis.tex"])
+def test_a_place_that_holds_something_else_is_refused(tmp_path, file):
+    (tmp_path / file).touch()
+    (tmp_path / "scenario.yaml").touch()
+    if file == "thesis.tex":
+        (tmp_path / "scenario.yaml").unlink()
+    with pytest.raises(OutputError, match="would be lost"):
+        require_certificate_place(tmp_path)
+
+
+def test_one_robot_has_no_margins_to_draw(tmp_path):
+    overrides = {"formation": {"shape": "line", "robots": 1, "side": 1.0}, "robots.start": {"centre": [0, 0]}}
+    left_out = write_certificate(tmp_path / "one", certify(load_scenario("line", overrides=overrides)))
+    assert {"delay_margin", "error_against_effort", "error_against_channels"} == set(left_out)
+    assert all(left_out.values())
+
+
+def test_channels_of_many_robots_are_drawn_where_asked(certificate, tmp_path, monkeypatch):
+    monkeypatch.setattr(analysis_output, "FEW_ROBOTS", 1)
+    assert set(write_certificate(tmp_path / "unasked", certificate)) == {"error_against_channels"}
+    asked = certify(certificate.scenario, questions=Questions(consensus_error=1.0))
+    assert write_certificate(tmp_path / "asked", asked) == {}

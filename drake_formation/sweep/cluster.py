@@ -21,6 +21,8 @@ class Cluster:
         address: of the scheduler, such as ``tcp://10.0.0.1:8786``.
     """
 
+    blocking = False
+
     def __init__(self, address: str) -> None:
         try:
             from distributed import Client

@@ -14,6 +14,8 @@ from drake_formation.sweep.work import Chunk, Outcome, Report, Task
 
 CHUNK_TIME = 1.0
 """How long a chunk should take (s): long beside what it costs to send, short beside what a kill may cost."""
+SHORTEST_TIME = 0.02
+"""Below this (s) it costs more to send a chunk than even shares among the workers save."""
 MOST_POINTS = 256
 """Of a chunk."""
 
@@ -38,10 +40,17 @@ def drive(
     """
     supply = _Supply(sweep, task, points)
     waiting: dict[Future[Report], Chunk] = {}
+    outcomes: list[Outcome] = []
     while True:
+        if outcomes and executor.blocking:
+            keep(outcomes)
+            outcomes = []
         slots = executor.slots
         while len(waiting) < slots and (chunk := supply.take(slots)):
             waiting[executor.submit(chunk)] = chunk
+        if outcomes:  # while they are written, the workers are busy again
+            keep(outcomes)
+            outcomes = []
         if not waiting:
             return
         for future in wait(waiting, return_when=FIRST_COMPLETED).done:
@@ -50,12 +59,12 @@ def drive(
                 report = future.result()
             except executor.deaths as death:
                 if chunk.retried:
-                    keep([Outcome(index, str(death)) for index, _ in chunk.points])
+                    outcomes += [Outcome(index, str(death)) for index, _ in chunk.points]
                 else:
                     supply.give_back(chunk)
                 continue
             supply.learn(report)
-            keep(report.outcomes)
+            outcomes += report.outcomes
 
 
 class _Supply:
@@ -74,8 +83,9 @@ class _Supply:
         left = len(self._points) - self._next
         if not left:
             return None
-        wanted = int(CHUNK_TIME / self._seconds_per_point)
-        size = max(1, min(wanted, MOST_POINTS, left // (2 * slots)))
+        most, least = (int(seconds / self._seconds_per_point) for seconds in (CHUNK_TIME, SHORTEST_TIME))
+        share = left if slots == 1 else left // (2 * slots)
+        size = max(1, min(most, MOST_POINTS, left, max(share, least)))
         indices = self._points[self._next : self._next + size].tolist()
         self._next += size
         return Chunk(self._task, tuple((index, self._sweep.overrides(index)) for index in indices))

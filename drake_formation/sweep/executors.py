@@ -18,6 +18,10 @@ class Executor(Protocol):
         """How many chunks to hand out at once."""
 
     @property
+    def blocking(self) -> bool:
+        """Whether handing out a chunk takes until it is done."""
+
+    @property
     def deaths(self) -> tuple[type[BaseException], ...]:
         """What a future raises whose worker died."""
 
@@ -37,6 +41,7 @@ class Serial:
     """This very process."""
 
     slots = 1
+    blocking = True
     deaths: tuple[type[BaseException], ...] = ()
 
     def submit(self, chunk: Chunk) -> "Future[Report]":

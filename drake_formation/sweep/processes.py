@@ -38,6 +38,7 @@ class Processes:
         workers: how many.
     """
 
+    blocking = False
     deaths: tuple[type[BaseException], ...] = (WorkerDiedError,)
 
     def __init__(self, workers: int) -> None:

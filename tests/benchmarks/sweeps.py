@@ -75,9 +75,7 @@ def watch_memory(runs):
 
         run_sweep(sweep, folder, executor=workers, figures=False, progress=watch).close()
         database, dataset = ((Path(folder) / name).stat().st_size / 1e6 for name in (DATABASE, "sweep.nc"))
-        print(
-            f"\nOn disk: {database:.1f} MB of runs and {dataset:.1f} MB of dataset. At the end: {resident(os.getpid()):.0f} MB."
-        )
+        print(f"\nOn disk: {database:.1f} MB of runs, {dataset:.1f} MB of dataset")
 
 
 if __name__ == "__main__":

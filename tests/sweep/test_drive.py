@@ -1,7 +1,9 @@
 """Whatever chunks are made, in whatever order they end and whoever dies over them, every point comes out once."""
 
 import random
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections import namedtuple
+from concurrent.futures import Future
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from drake_formation.sweep.work import Outcome, Report, Task, versions
 
 SWEEP = load_sweep(quick_sweep({"path": "springs.stiffness", "linspace": [1.0, 2.0, 3000]}))
 TASK = Task(SWEEP.base.data, "compiled", None, versions())
+Waited = namedtuple("Waited", "done")
 
 
 class DeathError(Exception):
@@ -22,25 +25,33 @@ class DeathError(Exception):
 
 
 class Imagined:
-    """An executor that runs nothing: some points kill their worker, chunks end in random order."""
+    """An executor that runs nothing: some points kill their worker, and chunks end in random order when waited for."""
 
+    blocking = False
     deaths = (DeathError,)
 
     def __init__(self, slots, deadly=(), unlucky=0, seconds=1e-3, seed=0):
         self.slots, self.deadly, self.unlucky, self.seconds = slots, set(deadly), unlucky, seconds
-        self.sizes, self.most, self.open = [], 0, 0
-        self._random, self._pool = random.Random(seed), ThreadPoolExecutor(1)
+        self.chunks, self.sizes, self.most = {}, [], 0
+        self._random = random.Random(seed)
 
     def submit(self, chunk):
-        self.sizes.append(len(chunk.points))
-        self.open += 1
-        self.most = max(self.most, self.open)
         future = Future()
-        self._pool.submit(self._end, chunk, future)
+        self.chunks[future] = chunk
+        self.sizes.append(len(chunk.points))
+        self.most = max(self.most, len(self.chunks))
         return future
 
-    def _end(self, chunk, future):
-        self.open -= 1
+    def wait(self, futures, return_when):
+        """Let some of the chunks at work end."""
+        waiting = list(futures)
+        self._random.shuffle(waiting)
+        done = waiting[: self._random.randint(1, len(waiting))]
+        for future in done:
+            self.end(self.chunks.pop(future), future)
+        return Waited(done)
+
+    def end(self, chunk, future):
         indices = [index for index, _ in chunk.points]
         if self.deadly & set(indices) or self.unlucky > 0:
             self.unlucky -= 1
@@ -55,7 +66,8 @@ class Imagined:
 
 def driven(executor, points):
     kept = []
-    drive(SWEEP, TASK, np.array(points, dtype=int), executor, kept.extend)
+    with patch("drake_formation.sweep.drive.wait", executor.wait):
+        drive(SWEEP, TASK, np.array(points, dtype=int), executor, kept.extend)
     assert sorted(outcome.index for outcome in kept) == sorted(points)
     return {outcome.index: outcome for outcome in kept}
 
@@ -84,11 +96,17 @@ def test_a_worker_killed_from_outside_costs_nothing():
 
 
 def test_chunks_grow_with_quick_runs_and_shrink_towards_the_end():
-    executor = Imagined(2, seconds=1e-4)
+    executor = Imagined(2, seconds=5e-3)
     driven(executor, range(3000))
     assert executor.sizes[0] == 1
+    assert max(executor.sizes) == 200  # a second's worth
+    assert executor.sizes[-1] <= 4
+
+
+def test_chunks_of_very_quick_runs_are_bounded():
+    executor = Imagined(2, seconds=1e-5)
+    driven(executor, range(3000))
     assert max(executor.sizes) == MOST_POINTS
-    assert executor.sizes[-1] == 1
 
 
 def test_slow_runs_come_one_by_one():
@@ -99,8 +117,32 @@ def test_slow_runs_come_one_by_one():
 
 def test_what_is_no_death_ends_the_sweep():
     class Broken(Imagined):
-        def _end(self, chunk, future):
+        def end(self, chunk, future):
             future.set_exception(MemoryError("no more"))
 
     with pytest.raises(MemoryError):
         driven(Broken(1), range(3))
+
+
+class Immediate(Imagined):
+    """Runs a chunk before it returns, and notes what was not kept by then."""
+
+    blocking = True
+
+    def __init__(self, kept):
+        super().__init__(1, seconds=0.3)
+        self.kept, self.unkept = kept, []
+
+    def submit(self, chunk):
+        self.unkept.append(sum(self.sizes) - len(self.kept))
+        future = super().submit(chunk)
+        self.end(chunk, future)
+        return future
+
+
+def test_what_this_process_ran_is_kept_before_it_runs_on():
+    kept = []
+    executor = Immediate(kept)
+    drive(SWEEP, TASK, np.arange(50), executor, kept.extend)
+    assert len(kept) == 50
+    assert set(executor.unkept) == {0}

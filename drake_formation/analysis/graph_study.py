@@ -18,6 +18,9 @@ from drake_formation.formation import graphs
 FRONT = 24
 """Numbers of edges that a front shows where not all graphs can be tried."""
 
+MOST_EVALUATIONS = 60
+"""Errors computed at most in one search."""
+
 
 class GraphStudy:
     """Graphs tried for one formation and measure.
@@ -58,6 +61,11 @@ class GraphStudy:
         """Whether a lower bound on the error is known."""
         return self.least_error(self.most_edges) > 0
 
+    @property
+    def patience(self) -> int:
+        """Errors to compute in one search: an error costs some N³, and Harary's graphs leave little to gain."""
+        return min(MOST_EVALUATIONS, 2 + 4000 // self.complete.robots**2)
+
     @cached_property
     def path(self) -> dict[int, nx.Graph]:
         """The complete graph, thinned to every number of edges."""
@@ -83,11 +91,11 @@ class GraphStudy:
         graph, error = candidates[first], errors[first]
         return self.point(graph, error, error if every else self.least_error(graph.number_of_edges()))
 
-    def search(self, edges: int, enough: float = 0.0, evaluations: int = 60) -> GraphPoint:
+    def search(self, edges: int, enough: float = 0.0, evaluations: int | None = None) -> GraphPoint:
         """A good graph with so many edges; the search ends at an error that is enough (m), or after so many errors."""
         starts = {start: self.error(start) for start in starting_points(self.complete.robots, edges, self.path)}
         start = min(starts, key=lambda graph: starts[graph])
-        graph, error = exchanged(start, self.error, enough=enough, evaluations=evaluations)
+        graph, error = exchanged(start, self.error, enough=enough, evaluations=evaluations or self.patience)
         return self.point(graph, error, self.least_error(edges))
 
     def some_edges(self) -> list[int]:

@@ -52,13 +52,15 @@ def obstacle_effect(formation: LinearFormation, result: xr.Dataset) -> ObstacleE
         IllPosedError: there is one robot only, or the loop is not stable.
         ValueError: the result is of another number of robots, or has no transport.
     """
+    from scipy.integrate import trapezoid
+
     carried = result.isel(time=result["phase"].values == 1)
     if carried.sizes["time"] < 2 or carried.sizes["robot"] != formation.robots:
         raise ValueError("the result must have a transport phase, and as many robots as the formation")
     system = force_to_error(formation, formation.delta, formation.delta_v)
     times = carried["time"].values
     force = carried["avoidance_force"].transpose("time", "robot", "axis").values
-    impulses = np.trapezoid(np.linalg.norm(force, axis=-1), times, axis=0)
+    impulses = trapezoid(np.linalg.norm(force, axis=-1), times, axis=0)
     deviation = carried["deviation"]
     return ObstacleEffect(
         impulses_ns=impulses.tolist(),

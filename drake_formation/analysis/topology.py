@@ -2,6 +2,12 @@
 
 This is the paper's closing question on bandwidth (Sec. 5.4). A scenario's communication graph is connected, so only
 connected graphs are considered, although a loose bound may be met by local control alone.
+
+Why 10 channels perform as 12 for four robots: the Laplacian's eigenvalues are 2, 4, 4 instead of 4, 4, 4, and without
+δ_v these move the frequencies of the relative modes only; all decay at d/2m. What is left at the hand-off, which is the
+error that the paper measures, is therefore the same to a per cent, with 8 channels (2, 2, 4) as with 10, and with the
+best 6. An obstacle's blow is another matter: the worst error follows the fewest neighbours of any robot, so that 10
+channels (where two robots have two) are as good as 8, and a quarter worse than 12.
 """
 
 import numpy as np
@@ -35,7 +41,8 @@ def cheapest_graph(
 
     Where there are few enough graphs all are tried, from trees upwards: up to isomorphism if the robots can be swapped
     (to 7 of them), otherwise up to the formation's own symmetries (to 6). Beyond, the graph comes from a search, and
-    :mod:`.graph_bounds` says how many channels it takes at least.
+    :mod:`.graph_bounds` says how many channels it takes at least. An error costs some N³ (a millisecond for four
+    robots, 0.2 s for thirty), and a search computes 60 of them at most.
 
     Args:
         formation: the linearized formation; its own graph plays no part.

@@ -211,11 +211,17 @@ def test_eight_channels_bear_a_blow_as_ten():
     np.testing.assert_allclose(np.sort(ten)[:2], twelve.max(), rtol=2e-3)
 
 
+@pytest.mark.slow
 def test_the_papers_question_on_bandwidth():
-    """Fewest channels for the paper's own error: any bound that 10 channels meet, 8 meet."""
-    scenario = topology("12 channels (complete)")
-    front = pareto_front(linearize(scenario), measure=HandOff(scenario))
+    """For the paper's own error six channels do, if they are the right ones: so say the front and the run."""
+    complete = topology("12 channels (complete)")
+    front = pareto_front(linearize(complete), measure=HandOff(complete))
     assert front.exact
-    by_channels = {point.channels: point.error_m for point in front.points}
-    assert by_channels[8] < 1.01 * by_channels[12]
-    assert by_channels[6] < 1.25 * by_channels[12]
+    assert len(front.tried) == 38
+    errors = {point.channels: point.error_m for point in front.points}
+    assert max(errors.values()) < 1.01 * min(errors.values())
+    best = with_overrides(complete, {"consensus.graph": front.points[0].edges})
+    run = metrics(simulate(best, engine="compiled")).consensus_error_m
+    assert run == pytest.approx(errors[6], rel=5e-3)
+    cheapest = cheapest_graph(linearize(complete), error_bound_m=1.01 * errors[12], measure=HandOff(complete))
+    assert (cheapest.graph.channels, cheapest.optimal) == (6, True)

@@ -2,11 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Array = NDArray[np.float64]
 
@@ -40,7 +42,7 @@ class Metrics:
         return asdict(self)
 
 
-def metrics(result: xr.Dataset) -> Metrics:
+def metrics(result: "xr.Dataset") -> Metrics:
     """Measure a result.
 
     Args:
@@ -75,8 +77,10 @@ def measure(series: Mapping[str, Array]) -> Metrics:
     )
 
 
-def length(vectors: xr.DataArray) -> xr.DataArray:
+def length(vectors: "xr.DataArray") -> "xr.DataArray":
     """Euclidean length over the axes, units kept."""
+    import xarray as xr  # slow to import, and not needed to build a diagram
+
     lengths: xr.DataArray = xr.apply_ufunc(_length, vectors, input_core_dims=[["axis"]], keep_attrs=True)
     return lengths
 

@@ -1,13 +1,16 @@
 """The labelled result of a run: time × robot × axis, units as attributes."""
 
 from importlib.metadata import version
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from drake_formation.formation import graphs
 from drake_formation.scenario import Scenario, derive, to_yaml
 from drake_formation.simulation.series import Series
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 VECTOR = ("time", "robot", "axis")
 VARIABLES = {
@@ -33,7 +36,7 @@ VARIABLES = {
 """Dimensions, unit and meaning of each variable."""
 
 
-def labelled_result(scenario: Scenario, series: Series) -> xr.Dataset:
+def labelled_result(scenario: Scenario, series: Series) -> "xr.Dataset":
     """Label what came out of a run.
 
     Args:
@@ -44,6 +47,8 @@ def labelled_result(scenario: Scenario, series: Series) -> xr.Dataset:
         A dataset over ``time`` (every step of the integrator), ``robot`` (from 1), ``axis`` (x, y), ``spring``
         (``1-2``) and ``obstacle`` (from 1). ``deviation`` is NaN before the hand-off.
     """
+    import xarray as xr  # slow to import, and not needed to build a diagram
+
     variables = {
         name: xr.Variable(dimensions, series[name], {"units": units, "long_name": meaning})
         for name, (dimensions, units, meaning) in VARIABLES.items()

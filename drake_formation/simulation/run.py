@@ -1,9 +1,9 @@
 """Run a scenario: aggregation, hand-off, transport, and the obstacle-free response."""
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from pydrake.systems.framework import Context
 
 from drake_formation.diagram import build_diagram
@@ -13,6 +13,9 @@ from drake_formation.simulation.engines import ENGINES, Engine
 from drake_formation.simulation.recorder import NonFiniteStateError, Recording
 from drake_formation.simulation.result import labelled_result
 from drake_formation.simulation.series import Series, time_series
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Progress = Callable[[float], None]
 """Called with how much simulated time is done, from 0 to :func:`simulated_duration` (s)."""
@@ -27,14 +30,14 @@ class SimulationError(RuntimeError):
         partial: what was recorded until then, labelled as a result.
     """
 
-    def __init__(self, message: str, time: float, robot: int, partial: xr.Dataset) -> None:
+    def __init__(self, message: str, time: float, robot: int, partial: "xr.Dataset") -> None:
         super().__init__(message)
         self.time = time
         self.robot = robot
         self.partial = partial
 
 
-def simulate(scenario: Scenario, *, engine: str = "blocks", progress: Progress | None = None) -> xr.Dataset:
+def simulate(scenario: Scenario, *, engine: str = "blocks", progress: Progress | None = None) -> "xr.Dataset":
     """Run a scenario from its initial state to its end.
 
     Where there are obstacles, the transport is run once more from the hand-off without them: the deviation from that

@@ -95,8 +95,8 @@ def tune(
     _require_question(formation, effort_weight, largest_delta, largest_delta_v, hand_off_error_m)
     costs = costs or HandOffCost(formation, hand_off_error_m)
     largest = np.array([largest_delta, largest_delta_v])
-    start = np.clip(_as_if_alike(formation, effort_weight), 0.0, largest)
-    scale = np.clip(start, 1e-3 * largest.min(), largest)
+    alike, sizes = _as_if_alike(formation, effort_weight)
+    start, scale = np.clip(alike, 0.0, largest), np.minimum(sizes, largest)
     unit = costs.cost(start, effort_weight)[0]
 
     def objective(variables: NDArray[Any]) -> Any:
@@ -118,8 +118,8 @@ def tune(
     gains = np.clip(solution.GetSolution(variables) * scale, 0.0, largest)
     bounded = tuple(
         name
-        for name, gain, top in zip(("delta", "delta_v"), gains, largest, strict=True)
-        if min(gain, top - gain) <= 1e-6 * top * min(1.0, scale.min() / top)
+        for name, gain, top, size in zip(("delta", "delta_v"), gains, largest, scale, strict=True)
+        if min(gain, top - gain) <= 1e-6 * size
     )
     error, effort = costs.error_and_effort(*gains)
     return Tuned(float(gains[0]), float(gains[1]), effort_weight, error, effort, bounded, solver)
@@ -146,13 +146,12 @@ def weight_of(formation: LinearFormation, delta: float) -> float:
     return float((stiffness + connectivity * delta) ** -2)
 
 
-def _as_if_alike(formation: LinearFormation, effort_weight: float) -> Array:
-    """[δ, δ_v] that would be best if all relative modes were alike."""
+def _as_if_alike(formation: LinearFormation, effort_weight: float) -> tuple[Array, Array]:
+    """[δ, δ_v] that would be best if all relative modes were alike, and what it would be without the local gains."""
     stiffness, damping, mass, connectivity = _typical(formation)
     wanted = effort_weight**-0.5
-    gains = [wanted - stiffness, np.sqrt(2 * mass * wanted) - damping]
-    result: Array = np.array(gains) / connectivity
-    return result
+    whole = np.array([wanted, np.sqrt(2 * mass * wanted)])
+    return (whole - [stiffness, damping]) / connectivity, whole / connectivity
 
 
 def _typical(formation: LinearFormation) -> tuple[float, float, float, float]:

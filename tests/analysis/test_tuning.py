@@ -39,8 +39,12 @@ def test_it_is_the_distributed_lqr_of_the_same_weights():
     assert (found.delta, found.delta_v) == pytest.approx((lqr.delta, lqr.delta_v), rel=1e-4)
 
 
-@pytest.mark.parametrize("changes", [UNEQUAL, {"consensus.graph": "star"}], ids=["unequal", "star"])
-@pytest.mark.parametrize("weight", [1e-9, 1e-4])
+@pytest.mark.parametrize(
+    "changes",
+    [UNEQUAL, {"consensus.graph": "star"}, {"springs.stiffness": 3e4}],
+    ids=["unequal", "star", "steel"],
+)
+@pytest.mark.parametrize("weight", [1e-9, 1e-4, 1.0])
 def test_nothing_on_a_grid_is_better(changes, weight):
     formation = linearize(load_scenario("quadrilateral", overrides=changes))
     found = tune(formation, effort_weight=weight)

@@ -154,3 +154,11 @@ def test_plain_values():
     graph = graphs.graph("star", 3)
     assert fastest_weights(graph).to_dict()["edges"] == [[1, 2], [1, 3]]
     assert fastest_averaging(graph).to_dict()["factor"] == pytest.approx(0.5, abs=1e-6)
+
+
+def test_the_papers_ten_channels_are_eight():
+    """Of a square with one diagonal the best weights leave the diagonal out (paper, Sec. 5.4)."""
+    found = fastest_weights(graphs.graph([(0, 1), (0, 3), (1, 2), (1, 3), (2, 3)], 4))
+    np.testing.assert_allclose(found.weights, [0.25, 0.25, 0.25, 0.0, 0.25], atol=1e-5)
+    assert found.connectivity == pytest.approx(fastest_weights(graphs.graph("cycle", 4)).connectivity, rel=1e-6)
+    assert found.uniform_connectivity == pytest.approx(0.4)

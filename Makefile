@@ -3,6 +3,8 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
+# The peers that the benchmarks compare with have an environment to themselves.
+BENCH ?= .venv-bench
 # pip installs from outside, so that the environment needs no pip of its own (Debian ships venv without it).
 PIP := $(PYTHON) -m pip --python $(BIN)/python --disable-pip-version-check
 
@@ -14,7 +16,7 @@ help:
 	@echo "make check      lint, types and tests"
 	@echo "make diagrams   export the pictures in diagrams/ anew"
 	@echo "make reproduce  rerun the paper's study into out/paper"
-	@echo "make bench      measure speed"
+	@echo "make bench      measure speed beside the peers, and write tests/benchmarks/README.md"
 	@echo "make clean      remove the environment and all results"
 
 demo: $(VENV)/installed
@@ -44,12 +46,11 @@ diagrams: $(VENV)/installed
 reproduce: $(VENV)/installed
 	$(BIN)/drake-formation reproduce --out out/paper
 
-bench: $(VENV)/installed-dev
-	$(BIN)/python tests/benchmarks/bench.py
-	$(BIN)/python tests/benchmarks/lowered.py
+bench: $(BENCH)/installed
+	cd tests/benchmarks && $(abspath $(BENCH))/bin/python report.py $(PARTS)
 
 clean:
-	rm -rf $(VENV) out build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(BENCH) out build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis
 
 $(BIN)/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -63,3 +64,9 @@ $(VENV)/installed: pyproject.toml | $(BIN)/python
 $(VENV)/installed-dev: pyproject.toml | $(BIN)/python
 	$(PIP) install --quiet --editable '.[dev]'
 	@touch $@ $(VENV)/installed
+
+$(BENCH)/installed: pyproject.toml tests/benchmarks/requirements.txt
+	$(PYTHON) -m venv --without-pip $(BENCH)
+	$(PYTHON) -m pip --python $(BENCH)/bin/python --disable-pip-version-check install --quiet \
+		--editable . --requirement tests/benchmarks/requirements.txt
+	@touch $@

@@ -9,13 +9,11 @@ from unittest.mock import patch
 
 import naive
 import numpy as np
+from formations import IN_FORMATION, STIFF
 from independent import solve
 from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
 
 from drake_formation import build_diagram, load_scenario, simulate
-
-STIFF = {"springs.stiffness": 3e4, "consensus.delta": 2e4}
-IN_FORMATION = {"aggregation.duration": 0, "robots.start": {"centre": [2.5, 3.5]}}
 
 
 def naive_diagram(scenario):

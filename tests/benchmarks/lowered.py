@@ -5,28 +5,11 @@ import time
 
 import numpy as np
 import peers
+from formations import polygon
 from numba import njit
 
-from drake_formation import Scenario, build_diagram, load_scenario
+from drake_formation import build_diagram
 from drake_formation.lowering import lower
-
-STIFF = {"springs.stiffness": 3e4, "consensus.delta": 2e4}
-IN_FORMATION = {"aggregation.duration": 0, "robots.start": {"centre": [2.5, 3.5]}}
-
-
-def polygon(robots):
-    """Robots in formation, everything coupled with everything."""
-    return Scenario.model_validate(
-        {
-            "name": f"polygon-{robots}",
-            "formation": {"shape": "polygon", "robots": robots, "side": 1.0},
-            "robots": {"start": {"centre": [0.0, 0.0]}},
-            "springs": {"stiffness": 1000.0, "damping": 1.0},
-            "consensus": {"delta": 100.0, "delta_v": 1.0},
-            "avoidance": {"obstacles": [{"position": [60.0, 5.05]}, {"position": [80.0, 1.9]}]},
-            "transport": {"goal": [100.0, 0.0]},
-        }
-    )
 
 
 @njit(error_model="numpy")
@@ -73,33 +56,5 @@ def compare_derivatives():
         )
 
 
-def compare_runs():
-    print("\nOctagon, steel, δ = 2e4, 60 s from formation, accuracy 1e-6 (best of 7)\n")
-    print("| by | time (ms) | derivatives | difference (m) |\n| --- | --- | --- | --- |")
-    scenario = load_scenario("octagon", overrides={**STIFF, **IN_FORMATION})
-    diagram = build_diagram(scenario)
-    compiled = lower(diagram)
-    context = diagram.CreateDefaultContext()
-    start = context.get_continuous_state_vector().CopyToVector()
-    p = peers.parameters(scenario)
-
-    def ours():
-        context = diagram.CreateDefaultContext()
-        pieces = list(compiled.integrate(context, 60.0))
-        return pieces[-1].states[-1], sum(piece.evaluations for piece in pieces)
-
-    def hand():
-        x, _, evaluations = peers.dormand_prince(start, 60.0, p, 1e-6, 0.1)
-        return x, evaluations
-
-    expected, evaluations = hand()
-    state, our_evaluations = ours()
-    slow, quick = best(hand)[0], best(ours)[0]
-    print(f"| hand-written | {slow * 1e3:.2f} | {evaluations} | |")
-    print(f"| compiled diagram | {quick * 1e3:.2f} | {our_evaluations} | {np.abs(state - expected).max():.1e} |")
-    print(f"\nratio {quick / slow:.2f}")
-
-
 if __name__ == "__main__":
     compare_derivatives()
-    compare_runs()

@@ -12,16 +12,11 @@ from contextlib import redirect_stderr, redirect_stdout
 
 import numpy as np
 import peers
+from formations import IN_FORMATION, STIFF
 
 from drake_formation import build_diagram, load_scenario
 from drake_formation.lowering import lower
 
-STIFF = {
-    "springs.stiffness": 3e4,
-    "consensus.delta": 2e4,
-    "aggregation.duration": 0,
-    "robots.start": {"centre": [2.5, 3.5]},
-}
 SECONDS = np.arange(1.0, 61.0)
 ACCURACY = 1e-6
 REPEATS = 5
@@ -32,11 +27,13 @@ SLOW = 3.0
 class Job:
     """The scenario, compiled and by hand."""
 
-    def __init__(self, name="octagon"):
-        self.scenario = load_scenario(name, overrides=STIFF)
+    def __init__(self, offset=0.0, overrides=None):
+        self.scenario = load_scenario("octagon", overrides=STIFF | IN_FORMATION | (overrides or {}))
         self.diagram = build_diagram(self.scenario)
         self.compiled = lower(self.diagram)
-        self.start = self.diagram.CreateDefaultContext().get_continuous_state_vector().CopyToVector()
+        rest = self.diagram.CreateDefaultContext().get_continuous_state_vector().CopyToVector()
+        off = np.random.default_rng(0).normal(scale=offset, size=(len(rest) // 4, 4)) * [1, 1, 0, 0]
+        self.start = rest + off.ravel()
         self.numbers = peers.parameters(self.scenario)
         self.evaluations = 0
         self.reference = self.by("dormand_prince", 1e-12, 0.01)
@@ -50,16 +47,10 @@ class Job:
 
     def by(self, method, accuracy=ACCURACY, max_step=0.1):
         """States at every second by a method of the compiled diagram."""
-        pieces = list(
-            self.compiled.integrate(
-                self.diagram.CreateDefaultContext(),
-                60.0,
-                method=method,
-                accuracy=accuracy,
-                max_step=max_step,
-                at=SECONDS,
-            )
-        )
+        context = self.diagram.CreateDefaultContext()
+        context.SetContinuousState(self.start)
+        options = {"method": method, "accuracy": accuracy, "max_step": max_step, "at": SECONDS}
+        pieces = list(self.compiled.integrate(context, 60.0, **options))
         self.evaluations = sum(piece.evaluations for piece in pieces)
         return np.concatenate([piece.states for piece in pieces])
 
@@ -180,6 +171,32 @@ def measure(run, job):
     return states, min(spent), job.evaluations
 
 
+METHODS = {
+    "`compiled`": lambda job: job.by("dormand_prince"),
+    "`exponential`": lambda job: job.by("exponential"),
+    "`exponential`, steps to 0.5 s": lambda job: job.by("exponential", max_step=0.5),
+    "SciPy DOP853": by_scipy("DOP853"),
+    "SciPy LSODA": by_scipy("LSODA"),
+}
+CASES = {
+    "rubber, at rest": (0.0, {"springs.stiffness": 1.45}),
+    "steel, at rest": (0.0, {}),
+    "steel, 1 cm off": (0.01, {}),
+    "steel, 5 cm off": (0.05, {}),
+}
+
+
+def compare_methods():
+    print("Octagon, δ = 2e4, 60 s: candidates for the integrator, all on numba right-hand sides\n")
+    print("| start | by | time (ms) | derivatives | error (m) |\n| --- | --- | --- | --- | --- |")
+    for title, case in CASES.items():
+        job = Job(*case)
+        for name, run in METHODS.items():
+            states, spent, evaluations = measure(run, job)
+            error = np.abs(states - job.reference).reshape(60, -1, 4)[..., :2].max()
+            print(f"| {title} | {name} | {spent * 1e3:.3g} | {evaluations} | {error:.1e} |", flush=True)
+
+
 def compare(job):
     print("Octagon, steel, δ = 2e4, 60 s from formation, once warm\n")
     print("| by | time (ms) | of hand-written | derivatives | error (m) |\n| --- | --- | --- | --- | --- |")
@@ -198,3 +215,5 @@ def compare(job):
 
 if __name__ == "__main__":
     compare(Job())
+    print()
+    compare_methods()

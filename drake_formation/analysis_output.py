@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from drake_formation.analysis.certificate import Certificate
-from drake_formation.analysis.errors import IllPosedError
+from drake_formation.analysis.errors import UNSOLVABLE, IllPosedError
 from drake_formation.output import METRICS, RESULT, SCENARIO, OutputError, _moved_into_place, require_place
 from drake_formation.scenario import to_yaml
 
@@ -51,7 +51,7 @@ def write_certificate(folder: Path, certificate: Certificate) -> dict[str, str]:
         for name, draw in FIGURES.items():
             try:
                 draw(certificate).savefig(partial / "figures" / f"{name}.png", dpi=150)
-            except IllPosedError as reason:
+            except (IllPosedError, *UNSOLVABLE) as reason:
                 left_out[name] = str(reason)
         return left_out
 
@@ -83,6 +83,8 @@ def _error_against_effort(certificate: Certificate) -> "Figure":
 def _delay_margin(certificate: Certificate) -> "Figure":
     from drake_formation.viz.analysis_delay import delay_margin_against_delta
 
+    if not certificate.formation.laplacian.any():
+        raise IllPosedError("no robot talks to another, so no delay matters")
     return delay_margin_against_delta(certificate.formation)
 
 

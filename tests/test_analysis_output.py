@@ -52,6 +52,12 @@ def test_one_robot_has_no_margins_to_draw(tmp_path):
     assert all(left_out.values())
 
 
+def test_robots_that_do_not_talk_have_no_delay_to_draw(tmp_path):
+    silent = load_scenario("line", overrides={"consensus.graph": [], "springs.graph": []})
+    left_out = write_certificate(tmp_path / "silent", certify(silent))
+    assert "no robot talks" in left_out["delay_margin"]
+
+
 def test_channels_of_many_robots_are_drawn_where_asked(certificate, tmp_path, monkeypatch):
     monkeypatch.setattr(analysis_output, "FEW_ROBOTS", 1)
     assert set(write_certificate(tmp_path / "unasked", certificate)) == {"error_against_channels"}

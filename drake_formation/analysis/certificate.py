@@ -9,9 +9,8 @@ from importlib.metadata import version
 from typing import Any
 
 import networkx as nx
-import numpy as np
 
-from drake_formation.analysis.errors import IllPosedError
+from drake_formation.analysis.errors import UNSOLVABLE, IllPosedError
 from drake_formation.analysis.linearization import NOT_COVERED, LinearFormation, linearize
 from drake_formation.analysis.modes import Modes, modes
 from drake_formation.analysis.remedies import Remedy, cause, remedies
@@ -80,19 +79,19 @@ class Certificate:
     unanswered: dict[str, str] = field(default_factory=dict)
 
     @property
-    def stable(self) -> bool:
-        """Whether the formation returns to rest from every small deviation (Theorem 2)."""
+    def stable(self) -> bool | None:
+        """Whether the formation returns to rest from every small deviation; None where rounding hides it."""
         return self.modes.stable
 
     @cached_property
     def cause(self) -> str | None:
-        """Why the loop is unstable, in a sentence; None for a stable one."""
-        return None if self.stable else cause(self.formation)
+        """Why the loop is unstable, in a sentence; None for others."""
+        return cause(self.formation) if self.stable is False else None
 
     @cached_property
     def remedies(self) -> tuple[Remedy, ...]:
-        """Changes that make an unstable loop stable; none for a stable one."""
-        return () if self.stable else remedies(self.formation)
+        """Changes that make an unstable loop stable; none for others."""
+        return remedies(self.formation) if self.stable is False else ()
 
     @cached_property
     def no_limit(self) -> list[str]:
@@ -168,7 +167,7 @@ def certify(
             result = answer(formation, asked)
         except IllPosedError as error:
             unanswered[name] = str(error)
-        except np.linalg.LinAlgError as error:
+        except UNSOLVABLE as error:
             unanswered[name] = f"the numbers of the scenario are too far apart in size to compute it ({error})"
         else:
             if result is not None:

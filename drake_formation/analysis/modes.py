@@ -118,15 +118,21 @@ class Modes:
         return tuple(mode for mode in self.modes if mode.decay_rate <= least + ALIKE * abs(least))
 
     @property
-    def stable(self) -> bool:
-        """Whether every mode decays."""
-        return not self.unstable
+    def stable(self) -> bool | None:
+        """Whether every mode decays; None where rounding hides it."""
+        if self.unstable:
+            return False
+        return True if all(mode.decay_rate > self._rounding for mode in self.modes) else None
 
     @property
     def unstable(self) -> tuple[Mode, ...]:
-        """The modes that do not decay, to what rounding can tell."""
-        largest = max(abs(mode.eigenvalue) for mode in self.modes)
-        return tuple(mode for mode in self.modes if mode.decay_rate <= 1e-12 * largest)
+        """The modes that grow, beyond what rounding may have done."""
+        return tuple(mode for mode in self.modes if mode.decay_rate < -self._rounding)
+
+    @property
+    def _rounding(self) -> float:
+        """Decay rates below this (1/s) cannot be told from 0 beside the fastest mode."""
+        return 1e-12 * max(abs(mode.eigenvalue) for mode in self.modes)
 
 
 def modes(formation: LinearFormation) -> Modes:

@@ -41,6 +41,13 @@ def _verdict(certificate: Certificate) -> Iterator[RenderableType]:
             f"1/s and stays below 2 % of its beginning after {_number(slowest[0].settling_time)} s.",
         )
         return
+    if modes.stable is None:
+        yield Text.assemble(
+            ("stable: cannot be told. ", "bold yellow"),
+            "A motion decays or grows so slowly beside the fastest one that rounding hides which. The numbers of the "
+            "scenario are too far apart in size: look at springs.stiffness, consensus.delta and consensus.delta_v.",
+        )
+        return
     fastest = sorted(modes.unstable, key=lambda mode: mode.decay_rate)
     grown = "; ".join(f"{mode.kind} grows at {_number(-mode.decay_rate)} 1/s, {_pace(mode)}" for mode in fastest[:3])
     more = f"; and {len(fastest) - 3} more" if len(fastest) > 3 else ""

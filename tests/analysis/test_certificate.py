@@ -107,6 +107,14 @@ def test_robots_that_do_not_talk_are_certified_too():
     json.loads(found.to_json())
 
 
+@pytest.mark.parametrize("overrides", [{"consensus.delta_v": 1e9}, {"springs.stiffness": 1e200}])
+def test_what_rounding_hides_is_not_called_stable_or_unstable(overrides):
+    found = certify(load_scenario("line", overrides=overrides))
+    assert found.stable is None
+    assert json.loads(found.to_json())["stable"] is None
+    assert (found.cause, found.remedies) == (None, ())
+
+
 def test_what_is_asked_is_answered():
     slow = load_scenario("line", overrides={"springs.graph": [], "tracking.Q": [1.0, 1.0, 1601.0, 1601.0]})
     found = certify(slow, questions=Questions(decay_rate=0.3, force_limit=100.0, consensus_error=1.0))

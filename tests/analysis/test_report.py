@@ -46,6 +46,10 @@ def test_an_unstable_loop_is_called_unstable_with_what_to_try():
     assert "No answer" in text
 
 
+def test_what_rounding_hides_is_said():
+    assert "stable: cannot be told." in printed("line", **{"consensus.delta_v": 1e9})
+
+
 def test_a_request_out_of_reach_is_answered_in_words():
     text = printed("line", questions=Questions(decay_rate=0.2))
     assert "For a decay rate 0.2 1/s: no δ does" in text

@@ -47,7 +47,7 @@ def sweep_metrics(dataset: xr.Dataset) -> list[str]:
     return [
         str(name)
         for name, variable in dataset.data_vars.items()
-        if variable.dims in drawable and variable.dtype.kind == "f" and bool(variable.notnull().any())
+        if variable.dims in drawable and variable.dtype.kind == "f" and bool(np.isfinite(variable).any())
     ]
 
 
@@ -62,8 +62,10 @@ def metric_figure(dataset: xr.Dataset, name: str) -> Figure:
         dataset: over one or two axes.
         name: a metric.
     """
-    metric = dataset[name].max("robot", keep_attrs=True) if "robot" in dataset[name].dims else dataset[name]
-    metric = metric.load()
+    metric = dataset[name].load()
+    if "robot" in metric.dims:
+        metric = metric.max("robot", keep_attrs=True)
+    metric = metric.where(np.isfinite(metric))
     for dim in map(str, metric.dims):  # lines and cells follow the numbers, in whatever order they were written
         if _is_numeric(along := _along(metric, dim)):
             metric = metric.isel({dim: np.argsort(along.values, kind="stable")})
@@ -142,7 +144,7 @@ def _draw_distribution(figure: Figure, metric: xr.DataArray) -> None:
     columns = np.atleast_1d(figure.subplots(1, 1 + len(drawn)))
     values = metric.values[np.isfinite(metric.values)]
     wide = _is_wide(values)
-    bins = np.geomspace(values.min(), values.max(), 31) if wide else 30
+    bins = (np.geomspace if wide else np.linspace)(*_range(values), 31)
     columns[0].hist(values, bins=bins, color="tab:blue", edgecolor="white", linewidth=0.5)
     columns[0].axvline(float(np.median(values)), color="black", linewidth=1, label=f"median {np.median(values):.3g}")
     columns[0].set(xlabel=_label(metric), ylabel="runs", xscale="log" if wide else "linear")
@@ -152,6 +154,13 @@ def _draw_distribution(figure: Figure, metric: xr.DataArray) -> None:
         places, _ = xr.broadcast(coordinate, metric)
         axes.plot(places.transpose(*metric.dims).values.ravel(), metric.values.ravel(), ".", markersize=3, alpha=0.6)
         _label_values(axes, metric)
+
+
+def _range(values: Numbers) -> tuple[float, float]:
+    """Least and largest value, some way apart where they are all but the same."""
+    least, largest = float(values.min()), float(values.max())
+    room = 1e-6 * max(abs(least), abs(largest)) or 1e-6
+    return (least, largest) if largest - least > room else (least - room, largest + room)
 
 
 def _draw_spread(figure: Figure, metric: xr.DataArray) -> None:

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from matplotlib.colors import LogNorm
 from sweep.quick import quick_sweep
 
@@ -152,3 +154,20 @@ def test_one_value_and_failed_runs_can_be_drawn(axes):
     figure = metric_figure(results, "peak_force_n")
     figure.canvas.draw()
     assert "runs failed" in figure.get_suptitle()
+
+
+@settings(max_examples=30)
+@given(
+    axes=st.sampled_from(
+        [(STIFFNESS,), (GRAPHS,), (SAMPLES,), (STIFFNESS, DELTA), (GRAPHS, SAMPLES), (DELTA, SAMPLES)]
+    ),
+    values=st.lists(
+        st.floats(-1e100, 1e100) | st.sampled_from([0.0, 1.0, 1.0 + 1e-15, np.nan, np.inf]), min_size=1, max_size=8
+    ),
+)
+def test_whatever_came_out_can_be_drawn(axes, values):
+    results = dataset(*axes)
+    shape = results["peak_force_n"].shape
+    results["peak_force_n"][:] = np.resize(values, shape)
+    for name in sweep_metrics(results):
+        metric_figure(results, name).canvas.draw()

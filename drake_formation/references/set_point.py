@@ -5,10 +5,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 from pydrake.systems.framework import BasicVector_, LeafSystem_
-from pydrake.systems.scalar_conversion import TemplateSystem
+
+from drake_formation.systems.templates import block_template
 
 
-@TemplateSystem.define("SetPoint_")
+@block_template("SetPoint_", __name__)
 def SetPoint_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
     """The reference as a template over double, AutoDiffXd and Expression; see :class:`SetPoint`."""
 

@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydrake.systems.framework import BasicVector_, LeafSystem_
-from pydrake.systems.scalar_conversion import TemplateSystem
 from pydrake.trajectories import PiecewisePolynomial
 
 from drake_formation.systems.scalars import Scalar, row_at
+from drake_formation.systems.templates import block_template
 
 Array = NDArray[np.float64]
 
@@ -55,7 +55,7 @@ def polynomial_motion(time: Scalar, coefficients: list[Scalar]) -> tuple[Scalar,
     return value, slope, 2.0 * half_curvature
 
 
-@TemplateSystem.define("TrajectoryReference_")
+@block_template("TrajectoryReference_", __name__)
 def TrajectoryReference_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
     """The reference as a template over double, AutoDiffXd and Expression; see :class:`TrajectoryReference`."""
 

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 from pydrake.systems.framework import BasicVector_, LeafSystem_
-from pydrake.systems.scalar_conversion import TemplateSystem
 
 from drake_formation.systems.scalars import Scalar, positive_part
+from drake_formation.systems.templates import block_template
 
 
 def avoidance_force(
@@ -33,7 +33,7 @@ def avoidance_force(
     return push * dx, push * dy
 
 
-@TemplateSystem.define("ObstacleAvoidance_")
+@block_template("ObstacleAvoidance_", __name__)
 def ObstacleAvoidance_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
     """The controller as a template over double, AutoDiffXd and Expression; see :class:`ObstacleAvoidance`."""
 

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 from pydrake.systems.framework import BasicVector_, LeafSystem_
-from pydrake.systems.scalar_conversion import TemplateSystem
 
 from drake_formation.systems.scalars import Scalar
+from drake_formation.systems.templates import block_template
 
 
 def consensus_force(
@@ -34,7 +34,7 @@ def consensus_force(
     return -(delta * (dx - hx) + delta_v * dvx), -(delta * (dy - hy) + delta_v * dvy)
 
 
-@TemplateSystem.define("ConsensusController_")
+@block_template("ConsensusController_", __name__)
 def ConsensusController_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
     """The controller as a template over double, AutoDiffXd and Expression; see :class:`ConsensusController`."""
 

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 from pydrake.systems.framework import BasicVector_, LeafSystem_
-from pydrake.systems.scalar_conversion import TemplateSystem
+
+from drake_formation.systems.templates import block_template
 
 
 def consensus_errors(positions: Any, slots: Any) -> Any:
@@ -22,7 +23,7 @@ def consensus_errors(positions: Any, slots: Any) -> Any:
     return agreed - agreed.mean(axis=-2, keepdims=True)
 
 
-@TemplateSystem.define("ConsensusError_")
+@block_template("ConsensusError_", __name__)
 def ConsensusError_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
     """The observer as a template over double, AutoDiffXd and Expression; see :class:`ConsensusError`."""
 

@@ -3,13 +3,14 @@
 from typing import Any
 
 from pydrake.systems.framework import BasicVector_, LeafSystem_
-from pydrake.systems.scalar_conversion import TemplateSystem
+
+from drake_formation.systems.templates import block_template
 
 # Drake knows periodic events only; a period longer than any run makes this one happen once.
 NEVER_AGAIN = 1e12
 
 
-@TemplateSystem.define("HandOff_")
+@block_template("HandOff_", __name__)
 def HandOff_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
     """The switch as a template over double, AutoDiffXd and Expression; see :class:`HandOff`."""
 

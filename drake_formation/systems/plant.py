@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 from pydrake.systems.framework import BasicVector_, LeafSystem_, NumericParameterIndex
-from pydrake.systems.scalar_conversion import TemplateSystem
 
 from drake_formation.systems.scalars import Scalar
+from drake_formation.systems.templates import block_template
 
 SpringLaw = Callable[..., tuple[Scalar, Scalar]]
 
@@ -54,7 +54,7 @@ def linear_spring_force(
 SPRING_LAWS: dict[str, SpringLaw] = {"hookean": hookean_spring_force, "linear": linear_spring_force}
 
 
-@TemplateSystem.define("RobotPlant_")
+@block_template("RobotPlant_", __name__)
 def RobotPlant_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
     """The plant as a template over double, AutoDiffXd and Expression; see :class:`RobotPlant`."""
 

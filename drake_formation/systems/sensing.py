@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 from pydrake.systems.framework import BasicVector_, LeafSystem_
-from pydrake.systems.scalar_conversion import TemplateSystem
 
 from drake_formation.systems.scalars import Scalar, at_most
+from drake_formation.systems.templates import block_template
 
 
 def nearest(squared_distances: list[Scalar], robot: int) -> Scalar:
@@ -24,7 +24,7 @@ def nearest(squared_distances: list[Scalar], robot: int) -> Scalar:
     return result
 
 
-@TemplateSystem.define("NearestSensing_")
+@block_template("NearestSensing_", __name__)
 def NearestSensing_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
     """The sensing as a template over double, AutoDiffXd and Expression; see :class:`NearestSensing`."""
 

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydrake.systems.controllers import LinearQuadraticRegulator
 from pydrake.systems.framework import BasicVector_, LeafSystem_
-from pydrake.systems.scalar_conversion import TemplateSystem
 
 from drake_formation.systems.scalars import Scalar
+from drake_formation.systems.templates import block_template
 
 Array = NDArray[np.float64]
 Rows = tuple[tuple[float, ...], ...]
@@ -79,7 +79,7 @@ def feed_forward_force(inertia: Scalar, ax: Scalar, ay: Scalar) -> tuple[Scalar,
     return inertia * ax, inertia * ay
 
 
-@TemplateSystem.define("TrackingController_")
+@block_template("TrackingController_", __name__)
 def TrackingController_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
     """The controller as a template over double, AutoDiffXd and Expression; see :class:`TrackingController`."""
 

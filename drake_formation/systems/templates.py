@@ -1,0 +1,18 @@
+"""Blocks over all of Drake's scalars."""
+
+import sys
+from typing import Any
+
+from pydrake.systems.scalar_conversion import TemplateSystem
+
+
+def block_template(name: str, module: str) -> Any:
+    """Drake's decorator for a block over double, AutoDiffXd and Expression.
+
+    Told the module, Drake need not search the stack for it, which would take longer than all else of an import.
+
+    Args:
+        name: name of the template.
+        module: ``__name__`` where it is defined.
+    """
+    return TemplateSystem.define(name, scope=sys.modules[module])

@@ -16,6 +16,9 @@ from drake_formation.analysis.modes import Modes, modes
 from drake_formation.analysis.remedies import Remedy, cause, remedies
 from drake_formation.scenario import Scenario, derive
 
+LONGEST_PERIOD = 10.0
+"""No loss margin is looked for at a longer sampling period (s)."""
+
 UNITS = {
     "keys": "SI; a key ends in its unit, and what has none is a pure number or one of those below",
     "gain": "columns 1 and 2 in N/m, 3 and 4 in N s/m",
@@ -49,11 +52,15 @@ class Questions:
         """Refuse what cannot be asked.
 
         Raises:
-            IllPosedError: a value is not finite and above 0, or a damping ratio is above 1.
+            IllPosedError: a value is not finite and above 0, a period above 10 s, or a damping ratio above 1.
         """
         for name, value in vars(self).items():
             if value is not None and not 0 < value < float("inf"):
-                raise IllPosedError(f"{name.replace('_', ' ')} is {value:g}; allowed: finite and above 0")
+                raise IllPosedError(
+                    f"{name.removesuffix('_s').replace('_', ' ')} is {value:g}; allowed: finite and above 0"
+                )
+        if self.period_s is not None and self.period_s > LONGEST_PERIOD:
+            raise IllPosedError(f"period is {self.period_s:g}; allowed: above 0 and at most {LONGEST_PERIOD:g}")
         if self.damping_ratio is not None and self.damping_ratio > 1:
             raise IllPosedError(f"damping ratio is {self.damping_ratio:g}; allowed: above 0 and at most 1")
 

@@ -195,6 +195,8 @@ def _design(certificate: Certificate) -> Iterator[RenderableType]:
         )
     if limited is not None:
         yield Text(f"Largest δ under {limited.force_limit_n:g} N: {_number(limited.delta)} N/m.")
+    if "force_limited" in advice.unanswered:
+        yield Text(f"Largest δ under the force limit: none, {advice.unanswered['force_limited']}.")
 
 
 def _topology(certificate: Certificate) -> Iterator[RenderableType]:

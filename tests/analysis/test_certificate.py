@@ -128,6 +128,7 @@ def test_what_is_asked_is_answered():
     [
         {"period_s": 0.0},
         {"period_s": float("nan")},
+        {"period_s": 11.0},
         {"damping_ratio": 1.5},
         {"decay_rate": -1.0},
         {"force_limit": 0.0},

@@ -55,6 +55,10 @@ def test_a_request_out_of_reach_is_answered_in_words():
     assert "For a decay rate 0.2 1/s: no δ does" in text
 
 
+def test_a_force_limit_out_of_reach_is_answered_in_words():
+    assert "Largest δ under the force limit: none," in printed("line", questions=Questions(force_limit=1e-9))
+
+
 def test_the_papers_law_is_told_from_real_springs():
     assert "also resists a rotation, with 60000 N/m" in printed(
         "line", **{"springs.law": "linear", "springs.stiffness": 3e4}

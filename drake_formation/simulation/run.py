@@ -7,7 +7,7 @@ import numpy as np
 from pydrake.systems.framework import Context
 
 from drake_formation.diagram import build_diagram
-from drake_formation.parameters import block_parameters, structure, write_parameters
+from drake_formation.parameters import Parameters, block_parameters, structure, write_parameters
 from drake_formation.scenario import Scenario, derive, require_sound
 from drake_formation.simulation.engines import ENGINES, Engine
 from drake_formation.simulation.recorder import NonFiniteStateError, Recording
@@ -95,8 +95,28 @@ class PreparedRun:
             ScenarioError, SimulationError: as for :func:`simulate`.
             ValueError: its structure differs.
         """
+        require_sound(scenario)
+        parameters = block_parameters(scenario)
+        if structure(scenario, parameters) != self.structure:
+            raise ValueError(f"scenario {scenario.name!r} has another structure than the diagram made ready")
+        return self.run_known(scenario, parameters, progress=progress)
+
+    def run_known(self, scenario: Scenario, parameters: Parameters, *, progress: Progress | None = None) -> Series:
+        """Run a sound scenario that is known to have the structure, and whose numbers are known.
+
+        Args:
+            scenario: what to run.
+            parameters: its numbers, as :func:`drake_formation.parameters.block_parameters` gives them.
+            progress: called as the simulated time goes on.
+
+        Returns:
+            As :meth:`run`.
+
+        Raises:
+            ScenarioError, SimulationError: as for :func:`simulate`.
+        """
         begin, hand_off, end = scenario.simulator.start_time, derive.hand_off_time(scenario), derive.end_time(scenario)
-        context = self._initial_context(scenario)
+        context = self._initial_context(scenario, parameters)
         run = self._start(scenario, context, progress and (lambda time: progress(time - begin)))
         try:
             run.advance(hand_off)
@@ -121,11 +141,7 @@ class PreparedRun:
         _require_clear(scenario, series)
         return series
 
-    def _initial_context(self, scenario: Scenario) -> Context:
-        require_sound(scenario)
-        parameters = block_parameters(scenario)
-        if structure(scenario, parameters) != self.structure:
-            raise ValueError(f"scenario {scenario.name!r} has another structure than the diagram made ready")
+    def _initial_context(self, scenario: Scenario, parameters: Parameters) -> Context:
         context = self.diagram.CreateDefaultContext()
         write_parameters(self.diagram, context, parameters)
         starts = derive.starts(scenario)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.metrics import measure
-from drake_formation.parameters import structure
+from drake_formation.parameters import Parameters, block_parameters, structure
 from drake_formation.scenario import Scenario
 from drake_formation.simulation import PreparedRun
 from drake_formation.sweep.sampling import sample
@@ -22,7 +22,7 @@ class Runner:
     """Runs scenarios and keeps what a sweep asks for; builds a diagram once for each structure.
 
     Args:
-        engine: ``blocks`` or ``compiled``.
+        engine: as for :func:`drake_formation.simulate`.
         trajectories: time series to keep beside the metrics.
 
     Attributes:
@@ -42,7 +42,8 @@ class Runner:
             SimulationError: the run diverged or the integrator gave up.
             ScenarioError, LoweringError: the engine cannot run this scenario.
         """
-        series = self._ready(scenario).run(scenario)
+        parameters = block_parameters(scenario)
+        series = self._ready(scenario, parameters).run_known(scenario, parameters)
         values = {
             name: np.array(np.nan if value is None else value, dtype=float)
             for name, value in measure(series).to_dict().items()
@@ -51,8 +52,8 @@ class Runner:
             values |= sample(series, self._trajectories.variables, self._trajectories.every)
         return values
 
-    def _ready(self, scenario: Scenario) -> PreparedRun:
-        key = repr(structure(scenario))
+    def _ready(self, scenario: Scenario, parameters: Parameters) -> PreparedRun:
+        key = repr(structure(scenario, parameters))
         if key not in self._prepared:
             self.built += 1
             self._prepared[key] = PreparedRun(scenario, engine=self._engine)

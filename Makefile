@@ -42,6 +42,10 @@ diagrams: $(VENV)/installed
 	cp out/line/figures/paths.png diagrams/line-paths.png
 	$(BIN)/drake-formation reproduce --only fig11 --out out/paper
 	cp out/paper/figures/fig11.png diagrams/paper-fig11.png
+	$(BIN)/drake-formation sweep gains --out out/gains
+	cp out/gains/figures/consensus_error_m.png diagrams/gains-consensus-error.png
+	$(BIN)/drake-formation analyze line --set consensus.delta=1e4 --out out/certificate
+	cp out/certificate/figures/delay_margin.png diagrams/line-delay-margin.png
 
 reproduce: $(VENV)/installed
 	$(BIN)/drake-formation reproduce --out out/paper

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from drake_formation.analysis.certificate import Certificate
 from drake_formation.analysis.errors import UNSOLVABLE, IllPosedError
-from drake_formation.output import METRICS, RESULT, SCENARIO, OutputError, _moved_into_place, require_place
+from drake_formation.output import SCENARIO, moved_into_place
 from drake_formation.scenario import to_yaml
 
 if TYPE_CHECKING:
@@ -16,17 +16,6 @@ CERTIFICATE = "certificate.json"
 
 FEW_ROBOTS = 8
 """With more robots, error against channels is drawn only where the fewest channels are asked for."""
-
-
-def require_certificate_place(folder: Path) -> None:
-    """Make sure that a certificate may be written to a folder.
-
-    Raises:
-        OutputError: as for a run; also where the folder holds a run, which would be lost.
-    """
-    require_place(folder)
-    if not (folder / CERTIFICATE).exists() and any((folder / name).exists() for name in (RESULT, METRICS)):
-        raise OutputError(f"{folder}: holds a run, which would be lost; give another folder")
 
 
 def write_certificate(folder: Path, certificate: Certificate) -> dict[str, str]:
@@ -42,8 +31,7 @@ def write_certificate(folder: Path, certificate: Certificate) -> dict[str, str]:
     Raises:
         OutputError: it cannot be written there.
     """
-    require_certificate_place(folder)
-    with _moved_into_place(folder) as partial:
+    with moved_into_place(folder, mark=CERTIFICATE) as partial:
         (partial / CERTIFICATE).write_text(certificate.to_json(), encoding="utf-8")
         (partial / SCENARIO).write_text(to_yaml(certificate.scenario), encoding="utf-8")
         (partial / "figures").mkdir()

@@ -49,6 +49,12 @@ class EngineName(StrEnum):
     EXPONENTIAL = "exponential"
 
 
+Engine = Annotated[
+    EngineName,
+    typer.Option(help="The block diagram itself, or code compiled from it, integrated by steps or exponentially."),
+]
+
+
 class ExecutorName(StrEnum):
     """Who carries out the runs of a sweep."""
 
@@ -71,10 +77,7 @@ def run(
     scenario: Source,
     overrides: Overrides = None,
     out: Annotated[Path | None, typer.Option(help="Folder for the results; out/NAME if not given.")] = None,
-    engine: Annotated[
-        EngineName,
-        typer.Option(help="The block diagram itself, or code compiled from it, integrated by steps or exponentially."),
-    ] = EngineName.BLOCKS,
+    engine: Engine = EngineName.BLOCKS,
 ) -> None:
     """Run a scenario and write its metrics, result, diagram and figures."""
     from drake_formation.lowering.errors import LoweringError
@@ -102,10 +105,7 @@ def run(
 def sweep(
     source: Annotated[str, typer.Argument(metavar="SWEEP", help="A sweep file, or the name of a shipped one.")],
     out: Annotated[Path, typer.Option(help="Folder for the runs, the dataset and its figures.")],
-    engine: Annotated[
-        EngineName,
-        typer.Option(help="The block diagram itself, or code compiled from it, integrated by steps or exponentially."),
-    ] = EngineName.COMPILED,
+    engine: Engine = EngineName.COMPILED,
     executor: Annotated[ExecutorName, typer.Option(help="This process, or several.")] = ExecutorName.PROCESSES,
     workers: Annotated[int | None, typer.Option(min=1, help="Number of processes; default: of processors.")] = None,
     scheduler: Annotated[
@@ -152,14 +152,14 @@ def analyze(
     """Certify a scenario before it is simulated: stability, modes, margins and what disturbances do."""
     from drake_formation.analysis import IllPosedError, Questions, certify
     from drake_formation.analysis.report import report
-    from drake_formation.analysis_output import closing, require_certificate_place, write_certificate
-    from drake_formation.output import OutputError
+    from drake_formation.analysis_output import CERTIFICATE, closing, write_certificate
+    from drake_formation.output import OutputError, require_place
 
     resolved = load_scenario(scenario, overrides=overrides)
     try:
         asked = Questions(period, damping_ratio, decay_rate, force_limit, topology)
         if out:
-            require_certificate_place(out)
+            require_place(out, mark=CERTIFICATE)
         with Console(stderr=True).status("linearizing") as status:
             certificate = certify(resolved, questions=asked, progress=lambda part: status.update(f"analyzing: {part}"))
             left_out = write_certificate(out, certificate) if out else {}

@@ -22,16 +22,20 @@ class OutputError(OSError):
     """A place where a run cannot be written."""
 
 
-def require_place(folder: Path) -> None:
-    """Make sure that a run may be written to a folder.
+def require_place(folder: Path, *, mark: str = RESULT) -> None:
+    """Make sure that a result may be written to a folder.
+
+    Args:
+        folder: where.
+        mark: the file by which an earlier result of the same sort, which may be replaced, is known.
 
     Raises:
-        OutputError: it is a file, cannot be made, or holds something else than an earlier run, which would be lost.
+        OutputError: it is a file, cannot be made, or holds something else than such a result, which would be lost.
     """
     if folder.exists() and not folder.is_dir():
-        raise OutputError(f"{folder}: is a file; give a folder that is new, empty or holds an earlier run")
-    if folder.is_dir() and any(folder.iterdir()) and not (folder / SCENARIO).exists():
-        raise OutputError(f"{folder}: holds something else than a run, which would be lost; give another folder")
+        raise OutputError(f"{folder}: is a file; give a folder that is new, empty or holds an earlier {mark}")
+    if folder.is_dir() and any(folder.iterdir()) and not (folder / mark).exists():
+        raise OutputError(f"{folder}: holds something else than a {mark}, which would be lost; give another folder")
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=folder.parent):
@@ -49,7 +53,7 @@ def write_run(folder: Path, scenario: Scenario, result: xr.Dataset, figures: Met
         result: what came out.
         figures: its metrics.
     """
-    with _moved_into_place(folder) as partial:
+    with moved_into_place(folder) as partial:
         (partial / METRICS).write_text(json.dumps(figures.to_dict(), indent=2) + "\n", encoding="utf-8")
         _write_recorded(partial, scenario, result)
         diagram = build_diagram(scenario)
@@ -64,7 +68,7 @@ def write_failed_run(folder: Path, scenario: Scenario, partial_result: xr.Datase
         The folder, named after the one wanted: ``line.failed`` for ``line``.
     """
     failed = folder.with_name(f"{folder.name}.failed")
-    with _moved_into_place(failed) as partial:
+    with moved_into_place(failed) as partial:
         (partial / FAILURE).write_text(reason + "\n", encoding="utf-8")
         _write_recorded(partial, scenario, partial_result)
     return failed
@@ -79,9 +83,17 @@ def _write_recorded(folder: Path, scenario: Scenario, result: xr.Dataset) -> Non
 
 
 @contextmanager
-def _moved_into_place(folder: Path) -> Iterator[Path]:
-    """A new folder that takes the given one's place if all goes well, and is removed if not."""
-    require_place(folder)
+def moved_into_place(folder: Path, *, mark: str = RESULT) -> Iterator[Path]:
+    """A new folder that takes the given one's place if all goes well, and is removed if not.
+
+    Args:
+        folder: where.
+        mark: as for :func:`require_place`.
+
+    Raises:
+        OutputError: as for :func:`require_place`.
+    """
+    require_place(folder, mark=mark)
     partial = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
     try:
         yield partial

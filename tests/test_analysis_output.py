@@ -6,8 +6,8 @@ import pytest
 
 from drake_formation import analysis_output, load_scenario
 from drake_formation.analysis import Questions, certify
-from drake_formation.analysis_output import FIGURES, require_certificate_place, write_certificate
-from drake_formation.output import OutputError
+from drake_formation.analysis_output import CERTIFICATE, FIGURES, write_certificate
+from drake_formation.output import OutputError, require_place
 
 
 @pytest.fixture(scope="module")
@@ -38,11 +38,14 @@ def test_what_fails_on_the_way_leaves_the_earlier_certificate(certificate, tmp_p
 @pytest.mark.parametrize("file", ["result.nc", "thesis.tex"])
 def test_a_place_that_holds_something_else_is_refused(tmp_path, file):
     (tmp_path / file).touch()
-    (tmp_path / "scenario.yaml").touch()
-    if file == "thesis.tex":
-        (tmp_path / "scenario.yaml").unlink()
     with pytest.raises(OutputError, match="would be lost"):
-        require_certificate_place(tmp_path)
+        require_place(tmp_path, mark=CERTIFICATE)
+
+
+def test_a_run_does_not_take_the_place_of_a_certificate(tmp_path):
+    (tmp_path / CERTIFICATE).touch()
+    with pytest.raises(OutputError, match="would be lost"):
+        require_place(tmp_path)
 
 
 def test_one_robot_has_no_margins_to_draw(tmp_path):

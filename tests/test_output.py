@@ -2,12 +2,12 @@
 
 import pytest
 
-from drake_formation.output import SCENARIO, OutputError, _moved_into_place, require_place
+from drake_formation.output import RESULT, OutputError, moved_into_place, require_place
 
 
 def test_a_new_folder_appears_only_when_complete(tmp_path):
     place = tmp_path / "run"
-    with _moved_into_place(place) as partial:
+    with moved_into_place(place) as partial:
         (partial / "a").write_text("1")
         assert not place.exists()
     assert (place / "a").read_text() == "1"
@@ -17,20 +17,20 @@ def test_a_new_folder_appears_only_when_complete(tmp_path):
 def test_an_earlier_run_is_replaced_as_a_whole(tmp_path):
     place = tmp_path / "run"
     for name in ("old", "new"):
-        with _moved_into_place(place) as partial:
-            (partial / SCENARIO).touch()
+        with moved_into_place(place) as partial:
+            (partial / RESULT).touch()
             (partial / name).touch()
-    assert sorted(path.name for path in place.iterdir()) == ["new", SCENARIO]
+    assert sorted(path.name for path in place.iterdir()) == ["new", RESULT]
     assert list(tmp_path.iterdir()) == [place]
 
 
 def test_a_failure_while_writing_leaves_everything_as_it_was(tmp_path):
     place = tmp_path / "run"
-    with _moved_into_place(place) as partial:
-        (partial / SCENARIO).write_text("old")
-    with pytest.raises(FileNotFoundError), _moved_into_place(place) as partial:
-        (partial / "missing" / SCENARIO).write_text("new")
-    assert (place / SCENARIO).read_text() == "old"
+    with moved_into_place(place) as partial:
+        (partial / RESULT).write_text("old")
+    with pytest.raises(FileNotFoundError), moved_into_place(place) as partial:
+        (partial / "missing" / RESULT).write_text("new")
+    assert (place / RESULT).read_text() == "old"
     assert list(tmp_path.iterdir()) == [place]
 
 

@@ -13,31 +13,83 @@ Each question is a function of its own, of the ``LinearFormation`` that ``linear
 
 from drake_formation.analysis.certificate import Certificate, Questions, certify
 from drake_formation.analysis.consensus_gain import SmallestDelta, smallest_delta
+from drake_formation.analysis.delay import DelayMargin, delay_margin
+from drake_formation.analysis.design import DesignAdvice, design
+from drake_formation.analysis.distributed_lqr import DistributedLqr, distributed_lqr
+from drake_formation.analysis.disturbance import Disturbance, disturbance
+from drake_formation.analysis.edge_weights import AveragingWeights, FastestWeights, fastest_averaging, fastest_weights
 from drake_formation.analysis.errors import IllPosedError
+from drake_formation.analysis.force_limit import ForceLimited, largest_gain
+from drake_formation.analysis.graph_results import CheapestGraph, ParetoFront
 from drake_formation.analysis.linearization import NOT_COVERED, LinearFormation, linearize
 from drake_formation.analysis.local import LocalLoop, Margins, local_loops
+from drake_formation.analysis.loss import LossMargin, loss_margin
+from drake_formation.analysis.measures import ForceNoise, HandOff, Pulse, Vibration
 from drake_formation.analysis.modes import Mode, Modes, modes
+from drake_formation.analysis.obstacle_effect import ObstacleEffect, obstacle_effect
+from drake_formation.analysis.own_force import OwnForce, own_force, own_largest_gain
+from drake_formation.analysis.peak_force import PeakForce, peak_force
 from drake_formation.analysis.remedies import Remedy, remedies
 from drake_formation.analysis.rigidity import SpringLinearization, spring_linearization
+from drake_formation.analysis.sampled import longest_period
+from drake_formation.analysis.topology import cheapest_graph, pareto_front
+from drake_formation.analysis.tuning import Tuned, tune
+from drake_formation.analysis.velocity_gain import VelocityGain, velocity_gain
 
 __all__ = [
     "NOT_COVERED",
+    "AveragingWeights",
     "Certificate",
+    "CheapestGraph",
+    "DelayMargin",
+    "DesignAdvice",
+    "DistributedLqr",
+    "Disturbance",
+    "FastestWeights",
+    "ForceLimited",
+    "ForceNoise",
+    "HandOff",
     "IllPosedError",
     "LinearFormation",
     "LocalLoop",
+    "LossMargin",
     "Margins",
     "Mode",
     "Modes",
+    "ObstacleEffect",
+    "OwnForce",
+    "ParetoFront",
+    "PeakForce",
+    "Pulse",
     "Questions",
     "Remedy",
     "SmallestDelta",
     "SpringLinearization",
+    "Tuned",
+    "VelocityGain",
+    "Vibration",
     "certify",
+    "cheapest_graph",
+    "delay_margin",
+    "design",
+    "distributed_lqr",
+    "disturbance",
+    "fastest_averaging",
+    "fastest_weights",
+    "largest_gain",
     "linearize",
     "local_loops",
+    "longest_period",
+    "loss_margin",
     "modes",
+    "obstacle_effect",
+    "own_force",
+    "own_largest_gain",
+    "pareto_front",
+    "peak_force",
     "remedies",
     "smallest_delta",
     "spring_linearization",
+    "tune",
+    "velocity_gain",
 ]

@@ -9,6 +9,7 @@ from importlib.metadata import version
 from typing import Any
 
 import networkx as nx
+from threadpoolctl import threadpool_limits
 
 from drake_formation.analysis.errors import UNSOLVABLE, IllPosedError
 from drake_formation.analysis.linearization import NOT_COVERED, LinearFormation, linearize
@@ -163,7 +164,12 @@ def certify(
     Raises:
         ScenarioError: the scenario is wrong.
     """
-    asked = questions or Questions()
+    # Many small matrices: threads of the linear algebra would wait for one another most of the time.
+    with threadpool_limits(limits=1, user_api="blas"):
+        return _certified(scenario, questions or Questions(), progress)
+
+
+def _certified(scenario: Scenario, asked: Questions, progress: Callable[[str], None] | None) -> Certificate:
     formation = linearize(scenario)
     sections: dict[str, Any] = {}
     unanswered: dict[str, str] = {}

@@ -170,7 +170,7 @@ def _disturbance(certificate: Certificate) -> Iterator[RenderableType]:
         _number(worst["hinf_m_per_n"]),
         "m per N",
     )
-    table.add_row("white force noise on all, RMS (H2)", _number(worst["h2_all_m_per_n_sqrt_s"]), "m per N √s")
+    table.add_row("white force noise on every robot, RMS", _number(worst["rms_m_per_n_per_sqrt_hz"]), "m per N/√Hz")
     table.add_row(
         "noise in communicated positions, RMS", _number(worst["rms_m_per_m_per_sqrt_hz_position"]), "m per m/√Hz"
     )

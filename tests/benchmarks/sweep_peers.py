@@ -11,6 +11,7 @@ from multiprocessing import get_context
 
 import numpy as np
 import sweeps
+from formations import IN_FORMATION
 
 from drake_formation import build_diagram, load_scenario, with_overrides
 from drake_formation.lowering import lower
@@ -30,7 +31,7 @@ class Runs:
     ready: "Runs"
 
     def __init__(self, name):
-        self.scenario = load_scenario(name, overrides=sweeps.IN_FORMATION)
+        self.scenario = load_scenario(name, overrides=IN_FORMATION)
         self.diagram = build_diagram(self.scenario)
         self.compiled = lower(self.diagram)
 

@@ -10,10 +10,11 @@ import tempfile
 import time
 from pathlib import Path
 
+from formations import IN_FORMATION
+
 from drake_formation.sweep import Processes, load_sweep, run_sweep
 from drake_formation.sweep.store import DATABASE
 
-IN_FORMATION = {"aggregation.duration": 0.0, "robots.start": {"centre": [2.5, 3.5]}}
 REPEATS = 5
 
 
@@ -26,11 +27,11 @@ def gains(scenario, count=8):
     return load_sweep({"name": "gains", "scenario": scenario, "set": IN_FORMATION, "axes": axes})
 
 
-def seconds(sweep, executor):
+def seconds(sweep, executor, engine="compiled"):
     """Wall time of a sweep into a new folder (s)."""
     with tempfile.TemporaryDirectory() as folder:
         begin = time.perf_counter()
-        run_sweep(sweep, folder, executor=executor, figures=False).close()
+        run_sweep(sweep, folder, engine=engine, executor=executor, figures=False).close()
         return time.perf_counter() - begin
 
 

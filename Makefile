@@ -23,7 +23,7 @@ demo: $(VENV)/installed
 	$(BIN)/drake-formation run diagrams/line.yaml --out out/line
 
 test: $(VENV)/installed-dev
-	$(BIN)/python -m pytest $(PYTEST)
+	$(BIN)/python -m pytest --numprocesses auto --dist loadfile $(PYTEST)
 
 check: lint types test
 

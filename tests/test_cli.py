@@ -8,33 +8,12 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
-from drake_formation.cli import main
-
 SHORT = ["--set", "aggregation.duration=2", "--set", "transport.duration=3"]
 DIVERGING = [
     "--set", "simulator.integration_scheme=explicit_euler",
     "--set", "simulator.use_error_control=false",
     "--set", "consensus.delta=1e4",
 ]  # fmt: skip
-
-
-@pytest.fixture
-def cli(monkeypatch, capsys, tmp_path):
-    """Run the command in an empty folder; gives the exit status, standard output and standard error."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments):
-        monkeypatch.setattr(sys, "argv", ["drake-formation", *map(str, arguments)])
-        try:
-            main()
-            status = 0
-        except SystemExit as stop:
-            status = stop.code or 0
-        captured = capsys.readouterr()
-        assert "Traceback" not in captured.out + captured.err
-        return status, captured.out, captured.err
-
-    return run
 
 
 def test_run_writes_everything_and_says_where(cli):

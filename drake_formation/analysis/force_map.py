@@ -44,10 +44,10 @@ class AutoDiffFormation:
     """
 
     def __init__(self, formation: LinearFormation) -> None:
-        self.diagram = build_diagram(formation.scenario).ToAutoDiffXd()
+        diagram = build_diagram(formation.scenario)
+        self.rest = diagram.CreateDefaultContext().get_continuous_state_vector().CopyToVector()
+        self.diagram = diagram.ToAutoDiffXd()
         self.context = self.diagram.CreateDefaultContext()
-        self.rest = build_diagram(formation.scenario).CreateDefaultContext().get_continuous_state_vector()
-        self.rest = self.rest.CopyToVector()
         self._robots = [robot_name(i) for i in range(formation.robots)]
 
     def set_gains(self, gains: ArrayLike) -> None:

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydrake.systems.framework import Context, Diagram, InputPortSelection, OutputPortSelection
+from pydrake.autodiffutils import ExtractGradient, InitializeAutoDiff
+from pydrake.systems.framework import Context, Diagram
 from pydrake.systems.primitives import Linearize
 
 from drake_formation.diagram import build_diagram
@@ -109,19 +110,20 @@ def linearize(scenario: Scenario) -> LinearFormation:
     rest = at_rest(scenario)
     diagram = build_diagram(rest)
     context = diagram.CreateDefaultContext()
+    state_matrix = StateMatrix(diagram)
 
     def linear(**changes: Any) -> Array:
         off = {"springs.stiffness": 0.0, "springs.damping": 0.0, "consensus.delta": 0.0, "consensus.delta_v": 0.0}
         named = {path.replace("__", "."): value for path, value in changes.items()}
         set_parameters(diagram, context, with_overrides(rest, {**off, **named}))
-        return _state_matrix(diagram, context)
+        return state_matrix.at(context)
 
     def with_gains(delta: float, delta_v: float) -> Array:
         # Past the checks: robots that do not all talk may be linearized, only not made to agree.
         for i in range(derive.robot_count(rest.formation)):
             block = find_block(diagram, f"{robot_name(i)}/consensus").GetMyMutableContextFromRoot(context)
             block.get_mutable_numeric_parameter(0).SetFromVector([delta, delta_v])
-        return _state_matrix(diagram, context)
+        return state_matrix.at(context)
 
     springs = linear(springs__stiffness=rest.springs.stiffness, springs__damping=rest.springs.damping)
     tracking = linear()
@@ -149,10 +151,25 @@ def at_rest(scenario: Scenario) -> Scenario:
     )
 
 
-def _state_matrix(diagram: Diagram, context: Context) -> Array:
-    linear = Linearize(diagram, context, InputPortSelection.kNoInput, OutputPortSelection.kNoOutput)
-    result: Array = linear.A()
-    return result
+class StateMatrix:
+    """∂ẋ/∂x of a diagram, as Drake's ``Linearize`` gives it; but the diagram is converted once for all Contexts.
+
+    Args:
+        diagram: a diagram without input ports, in double.
+    """
+
+    def __init__(self, diagram: Diagram) -> None:
+        self._diagram = diagram.ToAutoDiffXd()
+        self._context = self._diagram.CreateDefaultContext()
+
+    def at(self, context: Context) -> Array:
+        """The matrix about a Context's time, state and parameters, shape (states, states)."""
+        self._context.SetTimeStateAndParametersFrom(context)
+        state = context.get_continuous_state_vector().CopyToVector()
+        self._context.SetContinuousState(InitializeAutoDiff(state).ravel())
+        slope = self._diagram.EvalTimeDerivatives(self._context).CopyToVector()
+        result: Array = ExtractGradient(slope.reshape(-1, 1))
+        return result
 
 
 def _force_matrix(diagram: Diagram, scenario: Scenario) -> Array:

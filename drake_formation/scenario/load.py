@@ -1,5 +1,6 @@
 """Loading scenarios: the shipped ones by name, others from files, and variants of them."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from drake_formation.scenario.checks import check
@@ -24,7 +25,7 @@ def load_scenario(source: str | Path, *, overrides: Overrides | None = None) -> 
     Raises:
         ScenarioError: with all faults found, each with file and line or with the override it came from.
     """
-    return validate(apply(read(_file(source)), overrides))
+    return validate(apply(read(find_file(source, shipped_scenarios(), "scenario")), overrides))
 
 
 def with_overrides(scenario: Scenario, overrides: Overrides) -> Scenario:
@@ -58,8 +59,17 @@ def shipped_scenarios() -> dict[str, Path]:
     return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
 
 
-def _file(source: str | Path) -> Path:
-    shipped = shipped_scenarios()
+def find_file(source: str | Path, shipped: Mapping[str, Path], kind: str) -> Path:
+    """A file, or a shipped one by its name; a file of that name comes first.
+
+    Args:
+        source: the file or name.
+        shipped: what comes with the package, by name.
+        kind: what it is to be, for the message.
+
+    Raises:
+        ScenarioError: there is neither.
+    """
     path = Path(source)
     try:
         exists, folder = path.exists(), path.is_dir()
@@ -69,7 +79,7 @@ def _file(source: str | Path) -> Path:
         return path
     if str(source) in shipped:
         return shipped[str(source)]
-    message = "a folder, not a file" if folder else "no such file or shipped scenario"
+    message = "a folder, not a file" if folder else f"no such file or shipped {kind}"
     allowed = f"a file, {', '.join(shipped)}"
     raise ScenarioError([Fault((), message, "", allowed, nearest(path.stem, shipped), origin=str(source))])
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from drake_formation.scenario import Fault, ScenarioError, shipped_scenarios
 from drake_formation.scenario.errors import dotted, nearest, shown
+from drake_formation.scenario.load import find_file
 from drake_formation.scenario.overrides import apply, plain
 from drake_formation.scenario.source import Document, read
 from drake_formation.scenario.validate import validate
@@ -40,7 +41,7 @@ def load_sweep(source: str | Path | Mapping[str, Any]) -> Sweep:
     if isinstance(source, Mapping):
         document, folder, text = Document("the sweep", plain(source)), Path(), ""
     else:
-        path = _file(source)
+        path = find_file(source, shipped_sweeps(), "sweep")
         document, folder = read(path), path.parent
         text = path.read_text(encoding="utf-8")
     model = parsed(document)
@@ -57,22 +58,6 @@ def shipped_sweeps() -> dict[str, Path]:
     """Files of the sweeps that come with the package, by name."""
     folder = next(iter(shipped_scenarios().values())).parent / "sweeps"
     return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
-
-
-def _file(source: str | Path) -> Path:
-    shipped = shipped_sweeps()
-    path = Path(source)
-    try:
-        exists, folder = path.exists(), path.is_dir()
-    except (OSError, ValueError) as error:
-        raise ScenarioError([Fault((), f"not a usable path: {error}", origin=str(source))]) from error
-    if exists and not folder:
-        return path
-    if str(source) in shipped:
-        return shipped[str(source)]
-    message = "a folder, not a file" if folder else "no such file or shipped sweep"
-    allowed = f"a file, {', '.join(shipped)}"
-    raise ScenarioError([Fault((), message, "", allowed, nearest(path.stem, shipped), origin=str(source))])
 
 
 def _axes(document: Document, model: SweepFile) -> tuple[Axis, ...]:

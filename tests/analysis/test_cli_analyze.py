@@ -1,32 +1,11 @@
 """``drake-formation analyze``: what it prints, what it writes, and what it refuses."""
 
 import json
-import sys
 from pathlib import Path
 
 import pytest
 
 from drake_formation import load_scenario
-from drake_formation.cli import main
-
-
-@pytest.fixture
-def cli(monkeypatch, capsys, tmp_path):
-    """Run the command in an empty folder; gives the exit status, standard output and standard error."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments):
-        monkeypatch.setattr(sys, "argv", ["drake-formation", *map(str, arguments)])
-        try:
-            main()
-            status = 0
-        except SystemExit as stop:
-            status = stop.code or 0
-        captured = capsys.readouterr()
-        assert "Traceback" not in captured.out + captured.err
-        return status, captured.out, captured.err
-
-    return run
 
 
 def test_analyze_prints_a_certificate_and_writes_nothing(cli):

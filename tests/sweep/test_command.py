@@ -6,10 +6,7 @@ import sys
 import time
 from pathlib import Path
 
-import pytest
 import xarray as xr
-
-from drake_formation.cli import main
 
 QUICK = """\
 name: mine
@@ -25,28 +22,9 @@ FAILING = QUICK.replace("[30.0, 50.0]", "[30.0, 40.0, 50.0]")
 LONG = QUICK.replace("transport.duration: 0.5", "transport.duration: 60.0").replace("1.0e+4, 4", "1.0e+4, 4000")
 
 
-@pytest.fixture
-def cli(monkeypatch, capsys, tmp_path):
-    """Run the command in an empty folder; gives the exit status, standard output and standard error."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments):
-        monkeypatch.setattr(sys, "argv", ["drake-formation", "sweep", *map(str, arguments)])
-        try:
-            main()
-            status = 0
-        except SystemExit as stop:
-            status = stop.code or 0
-        captured = capsys.readouterr()
-        assert "Traceback" not in captured.out + captured.err
-        return status, captured.out, captured.err
-
-    return run
-
-
 def test_a_sweep_writes_its_dataset_and_figures_and_says_where(cli):
     Path("mine.yaml").write_text(QUICK)
-    status, out, _ = cli("mine.yaml", "--out", "o", "--executor", "serial")
+    status, out, _ = cli("sweep", "mine.yaml", "--out", "o", "--executor", "serial")
     assert status == 0
     assert "8 runs in o/sweep.nc, pictures in o/figures." in out
     assert "peak control force" in out
@@ -59,7 +37,7 @@ def test_a_sweep_writes_its_dataset_and_figures_and_says_where(cli):
 def test_failed_runs_end_in_status_3_and_say_where_their_errors_are(cli):
     Path("mine.yaml").write_text(FAILING)
     for retry in ([], ["--retry-failed"]):
-        status, out, _ = cli("mine.yaml", "--out", "o", "--executor", "serial", *retry)
+        status, out, _ = cli("sweep", "mine.yaml", "--out", "o", "--executor", "serial", *retry)
         assert status == 3
         assert "4 runs in o/sweep.nc" in out
         assert "4 runs failed: why is in o/failures.csv. --retry-failed runs them again." in out
@@ -68,18 +46,18 @@ def test_failed_runs_end_in_status_3_and_say_where_their_errors_are(cli):
 
 def test_what_is_wrong_is_said_before_anything_runs(cli):
     Path("mine.yaml").write_text(QUICK.replace("springs.stiffness", "springs.stifness"))
-    status, _, err = cli("mine.yaml", "--out", "o")
+    status, _, err = cli("sweep", "mine.yaml", "--out", "o")
     assert status == 2
     assert "mine.yaml:6: springs.stifness: unknown key" in err
     assert "did you mean 'stiffness'?" in err
     assert not Path("o").exists()
-    assert cli("ganis", "--out", "o")[0] == 2
+    assert cli("sweep", "ganis", "--out", "o")[0] == 2
 
 
 def test_another_sweep_in_the_folder_is_refused(cli):
     Path("mine.yaml").write_text(QUICK)
-    assert cli("mine.yaml", "--out", "o", "--executor", "serial")[0] == 0
-    status, _, err = cli("mine.yaml", "--out", "o", "--engine", "blocks")
+    assert cli("sweep", "mine.yaml", "--out", "o", "--executor", "serial")[0] == 0
+    status, _, err = cli("sweep", "mine.yaml", "--out", "o", "--engine", "blocks")
     assert status == 2
     assert "engine compiled, now blocks" in err
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydrake.systems.framework import BasicVector_, LeafSystem_
 
-from drake_formation.systems.templates import block_template
+from drake_formation.systems.templates import block_template, in_double
 
 
 @block_template("SetPoint_", __name__)
@@ -51,4 +51,4 @@ def SetPoint_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
     return Impl
 
 
-SetPoint = SetPoint_[None]
+SetPoint = in_double(SetPoint_)

@@ -8,7 +8,7 @@ from pydrake.systems.framework import BasicVector_, LeafSystem_
 from pydrake.trajectories import PiecewisePolynomial
 
 from drake_formation.systems.scalars import Scalar, row_at
-from drake_formation.systems.templates import block_template
+from drake_formation.systems.templates import block_template, in_double
 
 Array = NDArray[np.float64]
 
@@ -98,4 +98,4 @@ def TrajectoryReference_(T: Any) -> Any:  # noqa: N802 - Drake's name for a temp
     return Impl
 
 
-TrajectoryReference = TrajectoryReference_[None]
+TrajectoryReference = in_double(TrajectoryReference_)

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 from pydrake.systems.framework import BasicVector_, LeafSystem_
 
 from drake_formation.systems.scalars import Scalar, positive_part
-from drake_formation.systems.templates import block_template
+from drake_formation.systems.templates import block_template, in_double
 
 
 def avoidance_force(
@@ -89,4 +89,4 @@ def ObstacleAvoidance_(T: Any) -> Any:  # noqa: N802 - Drake's name for a templa
     return Impl
 
 
-ObstacleAvoidance = ObstacleAvoidance_[None]
+ObstacleAvoidance = in_double(ObstacleAvoidance_)

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from pydrake.systems.framework import BasicVector_, LeafSystem_
 
 from drake_formation.systems.scalars import Scalar
-from drake_formation.systems.templates import block_template
+from drake_formation.systems.templates import block_template, in_double
 
 
 def consensus_force(
@@ -86,4 +86,4 @@ def ConsensusController_(T: Any) -> Any:  # noqa: N802 - Drake's name for a temp
     return Impl
 
 
-ConsensusController = ConsensusController_[None]
+ConsensusController = in_double(ConsensusController_)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydrake.systems.framework import BasicVector_, LeafSystem_
 
-from drake_formation.systems.templates import block_template
+from drake_formation.systems.templates import block_template, in_double
 
 
 def consensus_errors(positions: Any, slots: Any) -> Any:
@@ -65,4 +65,4 @@ def ConsensusError_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
     return Impl
 
 
-ConsensusError = ConsensusError_[None]
+ConsensusError = in_double(ConsensusError_)

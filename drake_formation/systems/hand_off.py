@@ -4,7 +4,7 @@ from typing import Any
 
 from pydrake.systems.framework import BasicVector_, LeafSystem_
 
-from drake_formation.systems.templates import block_template
+from drake_formation.systems.templates import block_template, in_double
 
 # Drake knows periodic events only; a period longer than any run makes this one happen once.
 NEVER_AGAIN = 1e12
@@ -43,4 +43,4 @@ def HandOff_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
     return Impl
 
 
-HandOff = HandOff_[None]
+HandOff = in_double(HandOff_)

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from pydrake.systems.framework import BasicVector_, LeafSystem_, NumericParameterIndex
 
 from drake_formation.systems.scalars import Scalar
-from drake_formation.systems.templates import block_template
+from drake_formation.systems.templates import block_template, in_double
 
 SpringLaw = Callable[..., tuple[Scalar, Scalar]]
 
@@ -142,4 +142,4 @@ def RobotPlant_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
     return Impl
 
 
-RobotPlant = RobotPlant_[None]
+RobotPlant = in_double(RobotPlant_)

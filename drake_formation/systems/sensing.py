@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 from pydrake.systems.framework import BasicVector_, LeafSystem_
 
 from drake_formation.systems.scalars import Scalar, at_most
-from drake_formation.systems.templates import block_template
+from drake_formation.systems.templates import block_template, in_double
 
 
 def nearest(squared_distances: list[Scalar], robot: int) -> Scalar:
@@ -70,4 +70,4 @@ def NearestSensing_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
     return Impl
 
 
-NearestSensing = NearestSensing_[None]
+NearestSensing = in_double(NearestSensing_)

@@ -1,6 +1,7 @@
 """Blocks over all of Drake's scalars."""
 
 import sys
+from collections.abc import Callable
 from typing import Any
 
 from pydrake.systems.scalar_conversion import TemplateSystem
@@ -16,3 +17,18 @@ def block_template(name: str, module: str) -> Any:
         module: ``__name__`` where it is defined.
     """
     return TemplateSystem.define(name, scope=sys.modules[module])
+
+
+def in_double(template: Any) -> Callable[..., Any]:
+    """The block in double, Drake's default, as a function of its arguments.
+
+    It is instantiated at the first call: while modules are imported, Drake would search a deep stack for it too.
+
+    Args:
+        template: the block over all scalars.
+    """
+
+    def block(*arguments: Any, **options: Any) -> Any:
+        return template[float](*arguments, **options)
+
+    return block

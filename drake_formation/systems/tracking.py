@@ -9,7 +9,7 @@ from pydrake.systems.controllers import LinearQuadraticRegulator
 from pydrake.systems.framework import BasicVector_, LeafSystem_
 
 from drake_formation.systems.scalars import Scalar
-from drake_formation.systems.templates import block_template
+from drake_formation.systems.templates import block_template, in_double
 
 Array = NDArray[np.float64]
 Rows = tuple[tuple[float, ...], ...]
@@ -137,4 +137,4 @@ def TrackingController_(T: Any) -> Any:  # noqa: N802 - Drake's name for a templ
     return Impl
 
 
-TrackingController = TrackingController_[None]
+TrackingController = in_double(TrackingController_)

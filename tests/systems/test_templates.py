@@ -7,7 +7,7 @@ from pydrake.autodiffutils import AutoDiffXd
 from pydrake.symbolic import Expression
 from pydrake.systems.framework import BasicVector_, LeafSystem_
 
-from drake_formation.systems.templates import block_template
+from drake_formation.systems.templates import block_template, in_double
 
 
 @block_template("Doubled_", __name__)
@@ -43,3 +43,7 @@ def test_it_converts_to_all_scalars():
     assert doubled(system, 3.0) == 6.0
     assert doubled(system.ToAutoDiffXd(), AutoDiffXd(3.0, [1.0])).derivatives()[0] == 2.0
     assert doubled(system.ToSymbolic(), Expression(3.0)).Evaluate() == 6.0
+
+
+def test_the_default_is_in_double():
+    assert type(in_double(Doubled_)()) is Doubled_[float]

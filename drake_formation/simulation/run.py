@@ -80,6 +80,7 @@ class PreparedRun:
         self.diagram = build_diagram(scenario)
         self.structure = structure(scenario)
         self._start = ENGINES[engine](self.diagram)
+        self._context = self.diagram.CreateDefaultContext()
 
     def run(self, scenario: Scenario, *, progress: Progress | None = None) -> Series:
         """Run a scenario of the same structure.
@@ -142,7 +143,9 @@ class PreparedRun:
         return series
 
     def _initial_context(self, scenario: Scenario, parameters: Parameters) -> Context:
-        context = self.diagram.CreateDefaultContext()
+        context = self._context  # one for all runs, as making one takes as long as some runs
+        context.SetTime(0.0)
+        self.diagram.SetDefaultContext(context)
         write_parameters(self.diagram, context, parameters)
         starts = derive.starts(scenario)
         context.SetContinuousState(np.hstack([starts, np.zeros_like(starts)]).ravel())

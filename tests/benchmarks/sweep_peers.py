@@ -34,15 +34,17 @@ class Runs:
         self.scenario = load_scenario(name, overrides=IN_FORMATION)
         self.diagram = build_diagram(self.scenario)
         self.compiled = lower(self.diagram)
+        self.context = self.diagram.CreateDefaultContext()
 
     def states(self, stiffness, delta, **options):
         """States at every second, shape (60, 4N)."""
         scenario = with_overrides(
             self.scenario, {"springs.stiffness": float(stiffness), "consensus.delta": float(delta)}
         )
-        context = self.diagram.CreateDefaultContext()
-        write_parameters(self.diagram, context, block_parameters(scenario))
-        pieces = self.compiled.integrate(context, 60.0, at=SECONDS, **options)
+        self.context.SetTime(0.0)
+        self.diagram.SetDefaultContext(self.context)
+        write_parameters(self.diagram, self.context, block_parameters(scenario))
+        pieces = self.compiled.integrate(self.context, 60.0, at=SECONDS, **options)
         return np.concatenate([piece.states for piece in pieces])
 
     @staticmethod
@@ -78,7 +80,7 @@ def compare(name, robots, processors):
 
     peer = {
         parts: best(diffrax_peer.many(runs.scenario, start, 60, 1e-6, STIFFNESSES, DELTAS, parts))
-        for parts in (1, processors)
+        for parts in (1, processors, 2 * processors, 8 * processors)
     }
     states, baseline = min(peer.values(), key=lambda found: found[1])
     row("diffrax + vmap", states, baseline, baseline)

@@ -18,8 +18,6 @@ from numba import njit, types
 
 DONE, FULL, NOT_FINITE, STEP_TOO_SMALL = 0, 1, 2, 3
 
-FIRST_LEVEL = 3
-"""Drake starts with a tenth of the largest step; this is the level nearest to it."""
 ORDER = 4
 GROW = 1 / 64
 """Share of the accuracy below which steps are doubled; their error becomes some 32 times as large."""

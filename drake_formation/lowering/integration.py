@@ -21,6 +21,8 @@ CHUNK = 4096
 """Samples after which a compiled integrator reports."""
 LEVELS = 14
 """The exponential method's shortest steps are the longest halved so many times."""
+FIRST_LEVEL = 3.0
+"""Halvings of its first step: Drake starts with a tenth of the largest, and this is the level nearest to it."""
 
 
 class Status(IntEnum):
@@ -131,7 +133,7 @@ def exponential(
     them, which is quickest where they are evenly spaced.
     """
     integrate = _compiled("exponential")
-    clock = np.array([begin, 3.0])
+    clock = np.array([begin, FIRST_LEVEL])
     stops = np.zeros(0) if every else at[at > begin]
     at_begin = not every and len(at) > len(stops)
     if at_begin:
@@ -139,7 +141,6 @@ def exponential(
             np.array([begin]), state[None].copy(), flow.values, Status.FULL, begin, evaluations=0, rejected=0
         )
     ends = stops if len(stops) and stops[-1] == end else np.append(stops, end)
-    status = Status.DONE
     for length, group in _evenly_spaced(begin, ends):
         finished = False
         while not finished:

@@ -14,6 +14,21 @@ _LONGEST = 60
 _DEEPEST = 4
 _PLAIN_TEXT = re.compile(r"[A-Za-z_][\w ./-]*")
 
+MESSAGES = {
+    "missing": "missing",
+    "extra_forbidden": "unknown key",
+    "finite_number": "not finite",
+    "greater_than": "out of range",
+    "greater_than_equal": "out of range",
+    "less_than_equal": "out of range",
+    "literal_error": "unknown name",
+    "union_tag_invalid": "unknown name",
+    "string_pattern_mismatch": "not a valid name",
+    "too_long": "too many entries",
+    "too_short": "too few entries",
+}
+"""What is wrong with a field, by pydantic's name for it."""
+
 
 @dataclass(frozen=True)
 class Fault:

@@ -6,23 +6,10 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from drake_formation.scenario.checks import check
-from drake_formation.scenario.errors import Fault, nearest, shown
+from drake_formation.scenario.errors import MESSAGES, Fault, nearest, shown
 from drake_formation.scenario.fields import Place, chooser, locate, names
 from drake_formation.scenario.schema import Scenario
 from drake_formation.scenario.source import Document
-
-_MESSAGES = {
-    "missing": "missing",
-    "extra_forbidden": "unknown key",
-    "finite_number": "not finite",
-    "greater_than": "out of range",
-    "greater_than_equal": "out of range",
-    "less_than_equal": "out of range",
-    "literal_error": "unknown name",
-    "string_pattern_mismatch": "not a valid name",
-    "too_long": "too many entries",
-    "too_short": "too few entries",
-}
 
 
 def validate(document: Document) -> Scenario:
@@ -56,14 +43,14 @@ def _fault(detail: ErrorDetails) -> Fault:
         return _choice(place, value)
     if kind == "extra_forbidden":
         keys = place.section.model_fields
-        return Fault(place.path, _MESSAGES[kind], allowed=", ".join(keys), suggestion=nearest(place.path[-1], keys))
+        return Fault(place.path, MESSAGES[kind], allowed=", ".join(keys), suggestion=nearest(place.path[-1], keys))
     if kind == "missing":
-        return Fault(place.path, _MESSAGES[kind], allowed=place.allowed)
+        return Fault(place.path, MESSAGES[kind], allowed=place.allowed)
     return _wrong(place, value, kind)
 
 
 def _wrong(place: Place, value: Any, kind: str) -> Fault:
-    message = _MESSAGES.get(kind, "not allowed")
+    message = MESSAGES.get(kind, "not allowed")
     return Fault(place.path, message, shown(value), place.allowed, nearest(value, names(place.annotation)))
 
 

@@ -5,23 +5,10 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from drake_formation.scenario.errors import Fault, Path, ScenarioError, nearest, shown
+from drake_formation.scenario.errors import MESSAGES, Fault, Path, ScenarioError, nearest, shown
 from drake_formation.scenario.source import Document
 from drake_formation.scenario.values import Section
 from drake_formation.sweep.schema import SECTIONS, SweepFile
-
-_MESSAGES = {
-    "missing": "missing",
-    "extra_forbidden": "unknown key",
-    "finite_number": "not finite",
-    "greater_than": "out of range",
-    "greater_than_equal": "out of range",
-    "literal_error": "unknown name",
-    "union_tag_invalid": "unknown name",
-    "string_pattern_mismatch": "not a valid name",
-    "too_short": "too few entries",
-    "too_long": "too many entries",
-}
 
 
 def parsed(document: Document) -> SweepFile:
@@ -45,7 +32,7 @@ def _fault(data: Any, detail: ErrorDetails) -> Fault:
     kind, value = detail["type"], detail["input"]
     section = _section(detail["loc"])
     path = _path(data, detail["loc"], named=kind in ("missing", "extra_forbidden"))
-    message = _MESSAGES.get(kind, "not allowed")
+    message = MESSAGES.get(kind, "not allowed")
     if kind == "extra_forbidden":
         keys = section.model_fields
         return Fault(path, message, allowed=", ".join(keys), suggestion=nearest(path[-1], keys))

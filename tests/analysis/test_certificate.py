@@ -5,17 +5,12 @@ import json
 import pytest
 from hypothesis import given, settings
 from strategies import scenarios
+from unstable import UNSTABLE
 
 from drake_formation import load_scenario, with_overrides
 from drake_formation.analysis import IllPosedError, Questions, certificate, certify, linearize, modes
 from drake_formation.scenario import Scenario
 
-UNSTABLE = {
-    "tracking.Q": [1.0, 1.0, 1e4, 1.0],
-    "tracking.R": [[1.0, 0.9], [0.9, 1.0]],
-    "formation.heading": 150.0,
-    "springs.stiffness": 3e4,
-}
 NEEDS_STABILITY = {"delay_neighbour", "delay_relative", "loss", "disturbance"}
 
 

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from unstable import UNSTABLE_BY_SPRINGS
 
 from drake_formation import load_scenario
 from drake_formation.analysis import linearize
@@ -76,14 +77,7 @@ def test_robots_that_do_not_all_talk_have_a_peak_only():
 
 
 def test_an_unstable_loop_has_no_advice_but_reasons():
-    changes = {
-        "formation.heading": 105.0,
-        "robots.mass": 1.0,
-        "tracking.Q": [1.0, 1.0, 1.0, 1e4],
-        "tracking.R": [[1.0, 0.99], [0.99, 1.0]],
-        "springs.stiffness": 3e4,
-    }
-    advice = design(linearize(load_scenario("line", overrides=changes)))
+    advice = design(linearize(load_scenario("line", overrides=UNSTABLE_BY_SPRINGS)))
     assert {"velocity", "tuned", "peak", "present"} <= set(advice.unanswered)
     assert all("unstable" in advice.unanswered[name] for name in ("velocity", "tuned", "peak", "present"))
     assert advice.distributed is not None

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm, solve_continuous_are, solve_continuous_lyapunov
 from strategies import cost, generators
+from unstable import UNSTABLE_BY_SPRINGS
 
 from drake_formation import load_scenario, simulate
 from drake_formation.analysis import linearize
@@ -135,14 +136,7 @@ def test_the_scenario_with_these_gains_moves_as_the_design():
 
 def test_springs_may_undo_what_the_theorem_guarantees():
     """Input costs that tie x to y give a damping that is not symmetric; a stiff object across it then feeds motion."""
-    changes = {
-        "formation.heading": 105.0,
-        "robots.mass": 1.0,
-        "tracking.Q": [1.0, 1.0, 1.0, 1e4],
-        "tracking.R": [[1.0, 0.99], [0.99, 1.0]],
-        "springs.stiffness": 3e4,
-    }
-    formation = linearize(load_scenario("line", overrides=changes))
+    formation = linearize(load_scenario("line", overrides=UNSTABLE_BY_SPRINGS))
     found = distributed_lqr(formation, relative_cost=[1.0, 1.0, 0.0, 0.0])
     assert found.guaranteed
     assert found.decay_without_springs > 0

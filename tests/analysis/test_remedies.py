@@ -5,20 +5,13 @@ import pytest
 from hypothesis import given, settings
 from pydrake.systems.analysis import Simulator
 from strategies import scenarios
+from unstable import UNSTABLE
 
 from drake_formation import build_diagram, load_scenario, with_overrides
 from drake_formation.analysis.linearization import linearize
 from drake_formation.analysis.modes import modes
 from drake_formation.analysis.remedies import cause, remedies
 from drake_formation.scenario import derive
-
-# x is damped a hundred times as much as y, and R couples the two: along a bar at 150° the damping is negative.
-UNSTABLE = {
-    "tracking.Q": [1.0, 1.0, 1e4, 1.0],
-    "tracking.R": [[1.0, 0.9], [0.9, 1.0]],
-    "formation.heading": 150.0,
-    "springs.stiffness": 3e4,
-}
 
 
 def growth(scenario, seconds=8.0):

@@ -5,17 +5,11 @@ import re
 
 import pytest
 from rich.console import Console
+from unstable import UNSTABLE
 
 from drake_formation import load_scenario
 from drake_formation.analysis import Questions, certify
 from drake_formation.analysis.report import MOST_ROWS, report
-
-UNSTABLE = {
-    "tracking.Q": [1.0, 1.0, 1e4, 1.0],
-    "tracking.R": [[1.0, 0.9], [0.9, 1.0]],
-    "formation.heading": 150.0,
-    "springs.stiffness": 3e4,
-}
 
 
 def printed(name, questions=None, width=130, **overrides):

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from unstable import UNSTABLE
 
 from drake_formation import load_scenario
 from drake_formation.analysis import linearize, modes
@@ -11,15 +12,7 @@ CASES = {
     "steel line": ("line", {"springs.stiffness": 3e4, "consensus.delta": 1e4}),
     "octagon": ("octagon", {"consensus.graph": "cycle", "consensus.delta": 1e4, "consensus.delta_v": 200.0}),
     "one robot": ("line", {"formation": {"shape": "line", "robots": 1, "side": 1.0}, "robots.start": [[0, 0]]}),
-    "unstable": (
-        "line",
-        {
-            "tracking.Q": [1.0, 1.0, 1e4, 1.0],
-            "tracking.R": [[1.0, 0.9], [0.9, 1.0]],
-            "formation.heading": 150.0,
-            "springs.stiffness": 3e4,
-        },
-    ),
+    "unstable": ("line", UNSTABLE),
     "overdamped": ("line", {"tracking.Q": [1.0, 1.0, 1601.0, 1601.0], "springs.graph": []}),
 }
 

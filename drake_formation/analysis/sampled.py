@@ -23,7 +23,7 @@ Lost = Literal["zero", "hold"]
 """What stands in for a lost packet ("to zero or to hold", Schenato 2009): ``zero``, the term of its channel is left out
 for the period; ``hold``, the robot goes on with what it received last from that neighbour."""
 
-STEPS_PER_CYCLE = 20
+STEPS_PER_CYCLE = 80
 """Sampling periods tried within one cycle of the fastest mode, in search of the longest stable one."""
 
 
@@ -113,7 +113,8 @@ def longest_period(formation: LinearFormation, *, up_to_s: float = 1.0) -> float
     """The longest sampling period that the loop tolerates where no packet is lost.
 
     A force held for T is T/2 late on average, so for short periods this is twice the delay margin of the whole
-    relative term. Periods are tried in steps of a fraction of the fastest mode's cycle, up to the first unstable one.
+    relative term. Periods are tried in steps of a fraction of the fastest mode's cycle, and between them where growth is
+    largest, up to the first unstable one.
 
     Args:
         formation: the linearized closed loop.
@@ -135,7 +136,7 @@ def longest_period(formation: LinearFormation, *, up_to_s: float = 1.0) -> float
 
 def _first_unstable(alone: Array, sampled: Array, up_to: float) -> float:
     """The first period (s) at which a block's spectral radius reaches 1, or ``up_to``."""
-    from scipy.optimize import brentq
+    from scipy.optimize import brentq, minimize_scalar
 
     def growth(period_s: float) -> float:
         flow, held = period(alone, period_s)
@@ -143,9 +144,20 @@ def _first_unstable(alone: Array, sampled: Array, up_to: float) -> float:
 
     fastest = max(np.abs(np.linalg.eigvals(matrix)).max() for matrix in (alone, alone + sampled))
     count = int(np.ceil(up_to * fastest * STEPS_PER_CYCLE / (2 * np.pi)))
+    times = up_to * np.arange(1, count + 1) / count
+    rates = [growth(time) for time in times.tolist()]
     before = 0.0
-    for k in range(1, count + 1):
-        now = up_to * k / count
+    for k, time in enumerate(times.tolist()):
+        now = time
+        if rates[k] < 0 and 0 < k < count - 1 and rates[k] >= max(rates[k - 1], rates[k + 1]):
+            # A narrow range of unstable periods may lie between two stable ones, about where growth is largest.
+            peak = minimize_scalar(
+                lambda period_s: -growth(period_s),
+                bounds=(before, times[k + 1]),
+                method="bounded",
+                options={"xatol": 1e-9},
+            )
+            now = float(peak.x) if peak.fun <= 0 else time
         if growth(now) >= 0:
             # Continuous time is stable: so are periods short enough.
             while before == 0.0 or growth(before) >= 0:

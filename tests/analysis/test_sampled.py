@@ -98,3 +98,23 @@ def test_weak_consensus_may_be_sampled_slowly():
     formation = linearize(load_scenario("line", overrides={"consensus.delta": 0.2}))
     assert longest_period(formation) is None
     assert longest_period(formation, up_to_s=5.0) is None
+
+
+def test_a_narrow_range_of_unstable_periods_is_not_stepped_over():
+    """Between 0.762 and 0.807 s the held force meets a mode of the springs; longer periods are stable again."""
+    overrides = {
+        "formation.heading": 0.0,
+        "robots.mass": [74.72012779614913, 46.18760587512777],
+        "springs.stiffness": 368.47704031838504,
+        "springs.damping": 19.71173030025674,
+        "tracking.Q": [
+            [2.499627356889265, 0.9642580024451317, -1.0022572359159398, -0.4168557151481794],
+            [0.9642580024451317, 1.3038501651223242, -0.6674957287581739, -0.6393024394002094],
+            [-1.0022572359159398, -0.6674957287581739, 1.1896735973319537, 0.6439732685300862],
+            [-0.4168557151481794, -0.6393024394002094, 0.6439732685300862, 1.828058968574038],
+        ],
+        "tracking.R": [[1.1332170424250028, 0.6715170538266831], [0.6715170538266831, 1.227500969661334]],
+        "consensus.delta": 23.477267505879862,
+        "consensus.delta_v": 32.89953503879047,
+    }
+    assert longest_period(linearize(load_scenario("line", overrides=overrides))) == pytest.approx(0.7619, abs=1e-4)

@@ -113,8 +113,8 @@ def longest_period(formation: LinearFormation, *, up_to_s: float = 1.0) -> float
     """The longest sampling period that the loop tolerates where no packet is lost.
 
     A force held for T is T/2 late on average, so for short periods this is twice the delay margin of the whole
-    relative term. Periods are tried in steps of a fraction of the fastest mode's cycle, and between them where growth is
-    largest, up to the first unstable one.
+    relative term. Periods are tried in steps of a fraction of the fastest mode's cycle, and between them where
+    growth is largest, up to the first unstable one.
 
     Args:
         formation: the linearized closed loop.

@@ -15,9 +15,9 @@ from drake_formation.formation import graphs
 from drake_formation.scenario import (
     Scenario,
     ScenarioError,
-    derive,
     json_schema,
     load_scenario,
+    resolve,
     shipped_scenarios,
 )
 
@@ -228,7 +228,7 @@ def scenarios() -> None:
     table = Table("name", "robots", "what it shows")
     for name in shipped_scenarios():
         scenario = load_scenario(name)
-        table.add_row(name, str(derive.robot_count(scenario.formation)), scenario.description)
+        table.add_row(name, str(resolve(scenario).robots), scenario.description)
     console.print(table)
 
 
@@ -270,12 +270,12 @@ def _number(value: float | list[float] | None) -> str:
 
 def _description(scenario: Scenario) -> Table:
     """What a scenario reads as."""
-    count = derive.robot_count(scenario.formation)
+    count = resolve(scenario).robots
     table = Table("part", "reads as", title=scenario.name)
     table.add_row("formation", f"{scenario.formation.shape} of {count}")
     for name, graph in (
-        ("springs", derive.spring_graph(scenario)),
-        ("consensus", derive.communication_graph(scenario)),
+        ("springs", resolve(scenario).springs.graph),
+        ("consensus", resolve(scenario).channels.graph),
     ):
         edges = " ".join(f"{i + 1}-{j + 1}" for i, j in graphs.edges(graph)) or "none"
         table.add_row(f"{name} edges", edges)
@@ -285,7 +285,7 @@ def _description(scenario: Scenario) -> Table:
         "springs", f"{springs.law}, k = {_values(springs.stiffness)} N/m, c = {_values(springs.damping)} N s/m"
     )
     table.add_row("consensus", f"δ = {consensus.delta:g} N/m, δ_v = {consensus.delta_v:g} N s/m")
-    table.add_row("channels", str(graphs.channels(derive.communication_graph(scenario))))
+    table.add_row("channels", str(graphs.channels(resolve(scenario).channels.graph)))
     table.add_row("masses", f"{_values(scenario.robots.mass)} kg")
     return table
 

@@ -1,21 +1,21 @@
 """A scenario as a Drake diagram: the only place that wires blocks (paper, Figs. 2 and 3)."""
 
-import numpy as np
+from collections import defaultdict
+from collections.abc import Iterable
+from typing import Any
+
 from pydrake.systems.framework import Diagram, DiagramBuilder, System
 from pydrake.systems.primitives import Adder, ConstantVectorSource
 
-from drake_formation.formation import graphs
-from drake_formation.parameters import Parameters, block_parameters, robot_name
-from drake_formation.references.set_point import SetPoint
-from drake_formation.references.trajectory import TrajectoryReference
-from drake_formation.scenario import Scenario, derive, require_sound
-from drake_formation.systems.avoidance import ObstacleAvoidance
-from drake_formation.systems.consensus import ConsensusController
+from drake_formation.formation.formation import Formation
+from drake_formation.parameters import Parameters, block_parameters, channel_name, robot_name, structure
+from drake_formation.parts.part import Part
+from drake_formation.parts.registry import PartError
+from drake_formation.parts.roles import CONTROLLERS, ROLES, Role
+from drake_formation.scenario import Scenario, resolve
 from drake_formation.systems.consensus_error import ConsensusError
 from drake_formation.systems.hand_off import HandOff
-from drake_formation.systems.plant import RobotPlant
 from drake_formation.systems.sensing import NearestSensing
-from drake_formation.systems.tracking import TrackingController
 
 ROBOT_OUTPUTS = (
     "state",
@@ -27,6 +27,9 @@ ROBOT_OUTPUTS = (
     "spring_force",
 )
 """Output ports of every robot."""
+
+PORT_ORDER = ("phase", "reference", "spring", "channel", "sensed")
+"""Input ports of every robot, by the stem of their names, as far as its blocks have them."""
 
 
 def build_diagram(scenario: Scenario) -> Diagram:
@@ -46,23 +49,31 @@ def build_diagram(scenario: Scenario) -> Diagram:
 
     Raises:
         ScenarioError: the scenario is wrong.
+        PartError: a part has not the ports that its role asks for.
     """
-    require_sound(scenario)
-    parameters = block_parameters(scenario)
+    return wired(resolve(scenario))
+
+
+def wired(formation: Formation) -> Diagram:
+    """Build the block diagram of a formation; see :func:`build_diagram`."""
+    parameters = block_parameters(formation)
     builder = DiagramBuilder()
-    phase = builder.AddNamedSystem("phase", _phase(scenario))
-    reference = builder.AddNamedSystem("reference", _reference(scenario, parameters))
+    phase = builder.AddNamedSystem("phase", _phase(formation))
+    reference = _added(builder, "reference", formation, 0, parameters, "reference")
     if reference.num_input_ports():
         builder.Connect(phase.get_output_port(), reference.GetInputPort("phase"))
-    robots = [
-        builder.AddNamedSystem(robot_name(i), build_robot(scenario, parameters, i))
-        for i in range(derive.robot_count(scenario.formation))
-    ]
+    robots = [builder.AddNamedSystem(robot_name(i), robot_diagram(formation, i)) for i in range(formation.robots)]
     for robot in robots:
-        builder.Connect(phase.get_output_port(), robot.GetInputPort("phase"))
-        builder.Connect(reference.get_output_port(), robot.GetInputPort("reference"))
-    _couple(builder, robots, scenario)
-    if scenario.avoidance.sensing == "nearest":
+        for name in _input_names(robot):
+            stem, _, number = name.rpartition("_")
+            if name == "phase":
+                builder.Connect(phase.get_output_port(), robot.GetInputPort(name))
+            elif name == "reference":
+                builder.Connect(reference.GetOutputPort("centre"), robot.GetInputPort(name))
+            elif stem == "spring":
+                builder.Connect(robots[int(number) - 1].GetOutputPort("state"), robot.GetInputPort(name))
+    _talk(builder, phase, robots, formation, parameters)
+    if any("sensed" in _input_names(robot) for robot in robots):
         _sense_nearest(builder, robots, parameters)
     for i, robot in enumerate(robots):
         for output in ROBOT_OUTPUTS:
@@ -70,77 +81,116 @@ def build_diagram(scenario: Scenario) -> Diagram:
     _observe_consensus(builder, robots, parameters)
     builder.ExportOutput(phase.get_output_port(), "phase")
     diagram = builder.Build()
-    diagram.set_name(scenario.name)
+    diagram.set_name(formation.name)
+    diagram.structure = structure(formation)  # set_parameters compares
     return diagram
 
 
-def build_robot(scenario: Scenario, parameters: Parameters, robot: int) -> Diagram:
+def robot_diagram(formation: Formation, robot: int) -> Diagram:
     """Build one robot: its plant and its three controllers (paper, Fig. 3).
 
     Args:
-        scenario: a sound scenario.
-        parameters: the numbers of its blocks.
+        formation: the robot's.
         robot: index of the robot, from 0.
 
     Returns:
-        The robot, with input ports ``phase``, ``reference``, ``spring_j``, ``channel_j`` (and ``sensed``) and the
-        output ports named in ``ROBOT_OUTPUTS``.
+        The robot, with the input ports that its blocks ask for, of ``phase``, ``reference``, ``spring_j``,
+        ``channel_j`` and ``sensed``, and the output ports named in ``ROBOT_OUTPUTS``.
+
+    Raises:
+        PartError: a part has not the ports that its role asks for.
     """
-    name = robot_name(robot)
-    held = [j + 1 for j in graphs.neighbours(derive.spring_graph(scenario), robot)]
-    heard = [j + 1 for j in graphs.neighbours(derive.communication_graph(scenario), robot)]
-    start = np.concatenate([derive.starts(scenario)[robot], np.zeros(2)])
-    masked = scenario.avoidance.sensing == "nearest"
-
+    parameters = block_parameters(formation)
     builder = DiagramBuilder()
-    plant = builder.AddNamedSystem("plant", RobotPlant(held, scenario.springs.law, *parameters[f"{name}/plant"], start))
-    tracking = builder.AddNamedSystem("tracking", TrackingController(*parameters[f"{name}/tracking"]))
-    consensus = builder.AddNamedSystem("consensus", ConsensusController(heard, *parameters[f"{name}/consensus"]))
-    avoidance = builder.AddNamedSystem("avoidance", ObstacleAvoidance(*parameters[f"{name}/avoidance"], masked))
-    control = builder.AddNamedSystem("control", Adder(3, 2))
+    plant = _added(builder, "robot", formation, robot, parameters, f"{robot_name(robot)}/plant")
+    controllers = [
+        _added(builder, role, formation, robot, parameters, f"{robot_name(robot)}/{ROLES[role].block}")
+        for role in CONTROLLERS
+    ]
+    control = builder.AddNamedSystem("control", Adder(len(controllers), 2))
 
-    for k, controller in enumerate((tracking, consensus, avoidance)):
-        builder.Connect(plant.GetOutputPort("state"), controller.GetInputPort("state"))
+    asked: dict[str, list[System]] = defaultdict(list)
+    for block in (plant, *controllers):
+        for name in _input_names(block):
+            asked[name].append(block)
+    for k, controller in enumerate(controllers):
         builder.Connect(controller.GetOutputPort("force"), control.get_input_port(k))
         builder.ExportOutput(controller.GetOutputPort("force"), f"{controller.get_name()}_force")
-    builder.Connect(control.get_output_port(), plant.GetInputPort("force"))
-
-    builder.ExportInput(plant.GetInputPort("phase"), "phase")
-    builder.ConnectInput("phase", avoidance.GetInputPort("phase"))
-    builder.ExportInput(tracking.GetInputPort("reference"), "reference")
-    for j in held:
-        builder.ExportInput(plant.GetInputPort(f"spring_{j}"), f"spring_{j}")
-    for j in heard:
-        builder.ExportInput(consensus.GetInputPort(f"channel_{j}"), f"channel_{j}")
-    if masked:
-        builder.ExportInput(avoidance.GetInputPort("sensed"), "sensed")
+    for block in asked.pop("state", ()):
+        builder.Connect(plant.GetOutputPort("state"), block.GetInputPort("state"))
+    for block in asked.pop("force", ()):
+        builder.Connect(control.get_output_port(), block.GetInputPort("force"))
+    for name in sorted(asked, key=_port_order):
+        for block in asked[name]:
+            if block is asked[name][0]:
+                builder.ExportInput(block.GetInputPort(name), name)
+            else:
+                builder.ConnectInput(name, block.GetInputPort(name))
     builder.ExportOutput(plant.GetOutputPort("state"), "state")
     builder.ExportOutput(plant.GetOutputPort("spring_force"), "spring_force")
-    builder.ExportOutput(tracking.GetOutputPort("error"), "tracking_error")
+    builder.ExportOutput(controllers[0].GetOutputPort("error"), "tracking_error")
     builder.ExportOutput(control.get_output_port(), "control_force")
     return builder.Build()
 
 
-def _phase(scenario: Scenario) -> System:
+def _added(
+    builder: DiagramBuilder, role: str, formation: Formation, owner: int, parameters: Parameters, path: str
+) -> System:
+    """The block of a part, added under the last name of its path; its ports are those of its role."""
+    part: Part = formation.parts[role][owner]
+    block = part.block(formation, owner, parameters.get(path, ()))
+    _require_ports(ROLES[role], part, block)
+    return builder.AddNamedSystem(path.rsplit("/", maxsplit=1)[-1], block)
+
+
+def _require_ports(role: Role, part: Part, block: Any) -> None:
+    """Refuse a block that the role's wiring would leave out, or that asks for what nobody gives."""
+    called = f"{part.role} {part.kind!r} of {part.distribution}"
+    outputs = [block.get_output_port(k).get_name() for k in range(block.num_output_ports())]
+    for names, ports, what in ((_input_names(block), role.inputs, "input"), (outputs, role.outputs, "output")):
+        for port in ports:
+            if port.required and not any(port.is_called(name) for name in names):
+                raise PartError(f"{called}: its block has no {what} port {port.name!r} ({port.meaning})")
+    for name in _input_names(block):
+        if not any(port.is_called(name) for port in role.inputs):
+            known = ", ".join(port.name for port in role.inputs)
+            raise PartError(f"{called}: nothing is wired to its block's input port {name!r}; there are {known}")
+
+
+def _input_names(block: Any) -> list[str]:
+    return [block.get_input_port(k).get_name() for k in range(block.num_input_ports())]
+
+
+def _port_order(name: str) -> tuple[int, int]:
+    stem, _, number = name.rpartition("_")
+    return PORT_ORDER.index(stem or name), int(number) if stem else 0
+
+
+def _phase(formation: Formation) -> System:
     """The hand-off, or a constant where the scenario starts at transport."""
-    if scenario.aggregation.duration == 0:
-        return ConstantVectorSource([1.0])
-    return HandOff(derive.hand_off_time(scenario))
+    return HandOff(formation.hand_off) if formation.aggregation_duration else ConstantVectorSource([1.0])
 
 
-def _reference(scenario: Scenario, parameters: Parameters) -> System:
-    """A set point, which switches with the phase, or a trajectory, which starts by the clock at the hand-off."""
-    if scenario.transport.reference.kind == "set_point":
-        return SetPoint(*parameters["reference"])
-    return TrajectoryReference(*parameters["reference"])
-
-
-def _couple(builder: DiagramBuilder, robots: list[Diagram], scenario: Scenario) -> None:
-    """Wire the spring ports by the physical graph and the channels by the communication graph."""
-    for kind, graph in (("spring", derive.spring_graph(scenario)), ("channel", derive.communication_graph(scenario))):
-        for i, j in graphs.edges(graph):
-            builder.Connect(robots[j].GetOutputPort("state"), robots[i].GetInputPort(f"{kind}_{j + 1}"))
-            builder.Connect(robots[i].GetOutputPort("state"), robots[j].GetInputPort(f"{kind}_{i + 1}"))
+def _talk(
+    builder: DiagramBuilder, phase: System, robots: list[Diagram], formation: Formation, parameters: Parameters
+) -> None:
+    """Wire every channel from the robot that speaks to the one that hears, through the channel's block if any."""
+    for k, (i, j) in enumerate(formation.channels.pairs.tolist()):
+        name = f"channel_{j + 1}"
+        if name not in _input_names(robots[i]):
+            continue
+        state, heard = robots[j].GetOutputPort("state"), robots[i].GetInputPort(name)
+        part: Part = formation.parts["channel"][k]
+        block = part.block(formation, k, parameters.get(channel_name(i, j), ()))
+        if block is None:
+            builder.Connect(state, heard)
+            continue
+        _require_ports(ROLES["channel"], part, block)
+        builder.AddNamedSystem(channel_name(i, j), block)
+        builder.Connect(state, block.GetInputPort("sent"))
+        if "phase" in _input_names(block):
+            builder.Connect(phase.get_output_port(), block.GetInputPort("phase"))
+        builder.Connect(block.GetOutputPort("received"), heard)
 
 
 def _sense_nearest(builder: DiagramBuilder, robots: list[Diagram], parameters: Parameters) -> None:
@@ -148,10 +198,11 @@ def _sense_nearest(builder: DiagramBuilder, robots: list[Diagram], parameters: P
     sensing = builder.AddNamedSystem("sensing", NearestSensing(len(robots), centres))
     for i, robot in enumerate(robots):
         builder.Connect(robot.GetOutputPort("state"), sensing.get_input_port(i))
-        builder.Connect(sensing.get_output_port(i), robot.GetInputPort("sensed"))
+        if "sensed" in _input_names(robot):
+            builder.Connect(sensing.get_output_port(i), robot.GetInputPort("sensed"))
 
 
-def _observe_consensus(builder: DiagramBuilder, robots: list[Diagram], parameters: Parameters) -> None:
+def _observe_consensus(builder: DiagramBuilder, robots: Iterable[Diagram], parameters: Parameters) -> None:
     observer = builder.AddNamedSystem("consensus_error", ConsensusError(*parameters["consensus_error"]))
     for i, robot in enumerate(robots):
         builder.Connect(robot.GetOutputPort("state"), observer.get_input_port(i))

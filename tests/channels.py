@@ -11,11 +11,12 @@ from pydrake.systems.primitives import Adder, ConstantVectorSource
 from drake_formation.formation import graphs
 from drake_formation.lowering import lower
 from drake_formation.parameters import block_parameters, robot_name
-from drake_formation.references.set_point import SetPoint
-from drake_formation.scenario import derive
-from drake_formation.systems.consensus import consensus_force
-from drake_formation.systems.plant import RobotPlant
-from drake_formation.systems.tracking import TrackingController
+from drake_formation.parts.coordination.consensus import consensus_force
+from drake_formation.parts.references.set_point import SetPoint
+from drake_formation.parts.robots.point_mass import RobotPlant
+from drake_formation.parts.tracking.controller import TrackingController
+from drake_formation.parts.tracking.lqr import lqr_force
+from drake_formation.scenario import resolve
 
 
 class OpenChannels:
@@ -25,10 +26,10 @@ class OpenChannels:
     """
 
     def __init__(self, scenario):
-        graph = derive.communication_graph(scenario)
+        graph = resolve(scenario).channels.graph
         pairs = [(i, j) for i in sorted(graph) for j in graphs.neighbours(graph, i)]
         self.to, self.of = np.array(pairs).T
-        slots = derive.slots(scenario)
+        slots = resolve(scenario).slots
         self.displacements = slots[self.to] - slots[self.of]
         self.gains = scenario.consensus.delta, scenario.consensus.delta_v
         diagram, self.rest = _without_consensus(scenario)
@@ -79,19 +80,21 @@ class OpenChannels:
 
 
 def _without_consensus(scenario):
-    parameters = block_parameters(scenario)
+    formation = resolve(scenario)
+    parameters = block_parameters(formation)
     builder = DiagramBuilder()
     phase = builder.AddNamedSystem("phase", ConstantVectorSource([1.0]))
     reference = builder.AddNamedSystem("reference", SetPoint(*parameters["reference"]))
     builder.Connect(phase.get_output_port(), reference.GetInputPort("phase"))
-    springs, starts = derive.spring_graph(scenario), derive.starts(scenario)
+    springs, starts = resolve(scenario).springs.graph, resolve(scenario).starts
     start = np.hstack([starts, np.zeros_like(starts)])
     plants = []
     for i, state in enumerate(start):
         name = robot_name(i)
         held = [j + 1 for j in graphs.neighbours(springs, i)]
-        plant = RobotPlant(held, scenario.springs.law, *parameters[f"{name}/plant"], state)
-        tracking = TrackingController(*parameters[f"{name}/tracking"])
+        plant = RobotPlant(held, formation.law, *parameters[f"{name}/plant"], state)
+        *numbers, slot = parameters[f"{name}/tracking"]
+        tracking = TrackingController(lqr_force, numbers, slot)
         plants.append(builder.AddNamedSystem(f"{name}_plant", plant))
         builder.AddNamedSystem(f"{name}_tracking", tracking)
         control = builder.AddNamedSystem(f"{name}_control", Adder(2, 2))

@@ -6,8 +6,8 @@ from itertools import combinations
 import numpy as np
 from hypothesis import strategies as st
 
-from drake_formation.scenario import Scenario, derive
-from drake_formation.scenario.derive import Array
+from drake_formation.formation.formation import Array
+from drake_formation.scenario import Scenario, resolve
 
 SPACING = 0.5
 """No two slots of a random scenario are nearer to each other (m)."""
@@ -148,5 +148,5 @@ def pairs_of_scenarios():
 
 def random_state(scenario: Scenario, rng: np.random.Generator) -> Array:
     """A state of all robots near their starts, no two at one place, shape (N, 4)."""
-    starts = derive.starts(scenario)
+    starts = resolve(scenario).starts
     return np.hstack([starts + rng.uniform(-0.15, 0.15, starts.shape), rng.uniform(-2, 2, starts.shape)])

@@ -11,10 +11,9 @@ from strategies import generators, metres, random_state, scenarios
 
 from drake_formation.diagram import ROBOT_OUTPUTS, build_diagram
 from drake_formation.formation import graphs
-from drake_formation.parameters import tracking_gain
-from drake_formation.scenario import ScenarioError, derive, load_scenario, with_overrides
-from drake_formation.systems.avoidance import avoidance_force
-from drake_formation.systems.tracking import robot_matrices
+from drake_formation.parts.avoidance.khatib import avoidance_force
+from drake_formation.parts.tracking.lqr import cost_matrix, lqr_gain, robot_matrices
+from drake_formation.scenario import ScenarioError, load_scenario, resolve, with_overrides
 
 few = settings(max_examples=25)
 angles = st.floats(-np.pi, np.pi)
@@ -46,7 +45,7 @@ def test_springs_conserve_energy_when_nothing_else_acts(scenario, rng):
     scenario = with_overrides(scenario, {"springs.damping": 0.0, "consensus.delta": 0.0, "consensus.delta_v": 0.0})
     diagram = build_diagram(scenario)
     context = context_at(diagram, random_state(scenario, rng))
-    for i in range(len(derive.slots(scenario))):
+    for i in range(len(resolve(scenario).slots)):
         tracking = diagram.GetSubsystemByName(f"robot_{i + 1}").GetSubsystemByName("tracking")
         tracking.GetMyMutableContextFromRoot(context).get_mutable_numeric_parameter(0).SetFromVector(np.zeros(8))
     before = energy(scenario, state_of(context))
@@ -58,10 +57,10 @@ def test_springs_conserve_energy_when_nothing_else_acts(scenario, rng):
 
 def energy(scenario, state):
     """Kinetic energy and what the springs hold (J)."""
-    slots, (positions, velocities) = derive.slots(scenario), np.split(state, 2, axis=1)
-    total = (derive.masses(scenario) * (velocities**2).sum(axis=1)).sum() / 2
-    edges = graphs.edges(derive.spring_graph(scenario))
-    for (i, j), k in zip(edges, derive.each(scenario.springs.stiffness, len(edges)), strict=True):
+    slots, (positions, velocities) = resolve(scenario).slots, np.split(state, 2, axis=1)
+    total = (resolve(scenario).masses * (velocities**2).sum(axis=1)).sum() / 2
+    edges = [tuple(pair) for pair in resolve(scenario).springs.pairs.tolist()]
+    for (i, j), k in zip(edges, resolve(scenario).field("spring", "stiffness"), strict=True):
         apart, rest = positions[i] - positions[j], slots[i] - slots[j]
         if scenario.springs.law == "hookean":
             total += k / 2 * (np.linalg.norm(apart) - np.linalg.norm(rest)) ** 2
@@ -87,7 +86,7 @@ def test_forces_do_not_depend_on_where_the_world_frame_stands(scenario, rng, x, 
 def test_forces_turn_with_the_world_frame(scenario, rng, angle):
     state = random_state(scenario, rng)
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    turned_scenario = transformed(scenario, lambda points: points @ turn.T, slots=derive.slots(scenario) @ turn.T)
+    turned_scenario = transformed(scenario, lambda points: points @ turn.T, slots=resolve(scenario).slots @ turn.T)
     turned = forces(turned_scenario, (state.reshape(-1, 2, 2) @ turn.T).reshape(-1, 4))
     for name, force in forces(scenario, state).items():
         np.testing.assert_allclose(turned[name], force @ turn.T, rtol=1e-7, atol=1e-7, err_msg=name)
@@ -96,7 +95,7 @@ def test_forces_turn_with_the_world_frame(scenario, rng, angle):
 def transformed(scenario, transform, slots=None):
     """The scenario with every point of the world, and the slots if given, elsewhere."""
     changes = {
-        "robots.start": transform(derive.starts(scenario)),
+        "robots.start": transform(resolve(scenario).starts),
         "transport.goal": transform(np.array(scenario.transport.goal)),
     }
     for k, obstacle in enumerate(scenario.avoidance.obstacles):
@@ -109,10 +108,15 @@ def transformed(scenario, transform, slots=None):
 # The closed loop
 
 
+def gain_of(scenario, mass):
+    lqr = resolve(scenario).parts["tracking"][0]
+    return lqr_gain(mass, lqr.state_cost, lqr.input_cost)
+
+
 def linearized(scenario):
     """The diagram linearized about the formation at the goal."""
     diagram = build_diagram(scenario)
-    arrived = np.array(scenario.transport.goal) + derive.slots(scenario)
+    arrived = np.array(scenario.transport.goal) + resolve(scenario).slots
     context = context_at(diagram, np.hstack([arrived, np.zeros_like(arrived)]))
     return Linearize(diagram, context, InputPortSelection.kNoInput, OutputPortSelection.kNoOutput).A()
 
@@ -131,9 +135,12 @@ def test_the_linearized_diagram_is_the_papers_closed_loop(scenario):
     z[2:, :2] = stiffness / mass * np.eye(2)
     delta = np.kron([scenario.consensus.delta, scenario.consensus.delta_v], np.eye(2))
     physical, channels = (
-        graphs.laplacian(graph) for graph in (derive.spring_graph(scenario), derive.communication_graph(scenario))
+        graphs.laplacian(graph) for graph in (resolve(scenario).springs.graph, resolve(scenario).channels.graph)
     )
-    local = np.kron(np.eye(len(physical)), a - b @ tracking_gain(scenario, mass))
+    local = np.kron(
+        np.eye(len(physical)),
+        a - b @ gain_of(scenario, mass),
+    )
     expected = local - np.kron(physical, z) - np.kron(channels, b @ delta)
     np.testing.assert_allclose(linearized(scenario), expected, rtol=1e-9, atol=1e-9)
 
@@ -141,17 +148,19 @@ def test_the_linearized_diagram_is_the_papers_closed_loop(scenario):
 @few
 @given(scenarios(**linear_springs))
 def test_the_linearized_diagram_holds_every_robots_mass_and_every_edges_spring(scenario):
-    masses, edges = derive.masses(scenario), graphs.edges(derive.spring_graph(scenario))
+    masses, edges = resolve(scenario).masses, [tuple(pair) for pair in resolve(scenario).springs.pairs.tolist()]
     delta = np.kron([scenario.consensus.delta, scenario.consensus.delta_v], np.eye(2))
-    couplings = np.kron(graphs.laplacian(derive.communication_graph(scenario)), delta)
+    couplings = np.kron(resolve(scenario).channels.laplacian, delta)
     for name, gain in (("stiffness", [[1, 0, 0, 0], [0, 1, 0, 0]]), ("damping", [[0, 0, 1, 0], [0, 0, 0, 1]])):
-        values = derive.each(getattr(scenario.springs, name), len(edges))
+        values = resolve(scenario).field("spring", name)
         couplings = couplings + np.kron(weighted_laplacian(len(masses), edges, values), gain)
     expected = np.zeros((4 * len(masses),) * 2)
     for i, mass in enumerate(masses):
         a, b = robot_matrices(mass)
         rows = slice(4 * i, 4 * i + 4)
-        expected[rows, rows] += a - b @ tracking_gain(scenario, mass)
+        expected[rows, rows] += a - b @ lqr_gain(
+            mass, cost_matrix(scenario.tracking.Q, 4), cost_matrix(scenario.tracking.R, 2)
+        )
         expected[rows] -= b @ couplings[2 * i : 2 * i + 2]
     np.testing.assert_allclose(linearized(scenario), expected, rtol=1e-9, atol=1e-9)
 
@@ -222,7 +231,7 @@ def test_the_control_force_is_the_sum_of_its_three_parts(scenario, rng):
 @given(scenarios())
 def test_the_default_context_is_the_initial_state_at_rest(scenario):
     state = state_of(build_diagram(scenario).CreateDefaultContext())
-    np.testing.assert_array_equal(state, np.hstack([derive.starts(scenario), np.zeros((len(state), 2))]))
+    np.testing.assert_array_equal(state, np.hstack([resolve(scenario).starts, np.zeros((len(state), 2))]))
 
 
 @pytest.mark.parametrize("sensing", ["in_range", "nearest"])
@@ -272,7 +281,7 @@ def test_blocks_and_ports_have_readable_names():
 def test_an_unsound_scenario_is_refused():
     scenario = load_scenario("line")
     unsound = scenario.model_copy(update={"robots": scenario.robots.model_copy(update={"mass": (1.0, 2.0, 3.0)})})
-    with pytest.raises(ScenarioError, match="3 masses for 2 robots"):
+    with pytest.raises(ScenarioError, match="3 values for 2 robots"):
         build_diagram(unsound)
 
 

@@ -15,7 +15,7 @@ from drake_formation.analysis.errors import UNSOLVABLE, IllPosedError
 from drake_formation.analysis.linearization import NOT_COVERED, LinearFormation, linearize
 from drake_formation.analysis.modes import Modes, modes
 from drake_formation.analysis.remedies import Remedy, cause, remedies
-from drake_formation.scenario import Scenario, derive
+from drake_formation.scenario import Scenario
 
 LONGEST_PERIOD = 10.0
 """No loss margin is looked for at a longer sampling period (s)."""
@@ -261,7 +261,7 @@ def _design(formation: LinearFormation, asked: Questions) -> Any:
 
     if formation.robots < 2:
         raise IllPosedError("one robot has no consensus gains to choose")
-    if not nx.is_connected(derive.communication_graph(formation.scenario)):
+    if not nx.is_connected(formation.resolved.channels.graph):
         raise IllPosedError("the communication graph is not connected, so no gains make the robots agree (Lemma 1)")
     return design(formation, force_limit_n=asked.force_limit)
 

@@ -34,7 +34,6 @@ from drake_formation.analysis.blocks import blocks
 from drake_formation.analysis.delay_eigenvalues import Crossing, first_crossing, least, require_stable
 from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.linearization import LinearFormation, own
-from drake_formation.scenario import derive
 
 Array = NDArray[np.float64]
 
@@ -123,7 +122,7 @@ def delay_margin(
             raise ValueError(f"{name} is {gain}; it must be finite and not negative")
     if formation.robots < 2:
         raise IllPosedError("one robot has no channels: a delay margin needs at least two robots")
-    found = _first_crossing(*delay_parts(formation, of, delta, delta_v), derive.masses(formation.scenario))
+    found = _first_crossing(*delay_parts(formation, of, delta, delta_v), formation.resolved.masses)
     if found is None:
         return DelayMargin(of, delta, delta_v, None, None, None)
     return DelayMargin(of, delta, delta_v, found.delay, found.frequency, found.phase)

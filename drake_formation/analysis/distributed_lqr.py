@@ -25,10 +25,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from drake_formation.analysis.agreement import require_agreement
+from drake_formation.analysis.assumptions import same_lqr
 from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.linearization import STATES, LinearFormation
-from drake_formation.scenario import derive
-from drake_formation.systems.tracking import lqr_gain
+from drake_formation.parts.tracking.lqr import cost_matrix, lqr_gain
 
 Array = NDArray[np.float64]
 
@@ -120,9 +120,9 @@ def distributed_lqr(
             stable gain without springs.
     """
     plant, force = _plant(formation)
-    masses, tracking = derive.masses(formation.scenario), formation.scenario.tracking
-    state_cost, input_cost = derive.cost_matrix(tracking.Q, STATES), derive.cost_matrix(tracking.R, 2)
-    between = _relative_cost(state_cost if relative_cost is None else derive.cost_matrix(relative_cost, STATES))
+    masses, lqr = formation.resolved.masses, same_lqr(formation.resolved)
+    state_cost, input_cost = lqr.state_cost, lqr.input_cost
+    between = _relative_cost(state_cost if relative_cost is None else cost_matrix(relative_cost, STATES))
     spectrum = np.linalg.eigvalsh(formation.laplacian)
     systems = round(float(np.diag(formation.laplacian).max())) + 1
 
@@ -165,8 +165,8 @@ def relative_cost_of(formation: LinearFormation, delta: float) -> Array:
 
     With Q₁ = diag(q, q, ·, ·) and R = r I the joint stiffness is √((q + N_L q₂)/r), and it should be k_p + N_L δ.
     """
-    tracking = formation.scenario.tracking
-    q, r = derive.cost_matrix(tracking.Q, STATES)[0, 0], derive.cost_matrix(tracking.R, 2)[0, 0]
+    lqr = same_lqr(formation.resolved)
+    q, r = lqr.state_cost[0, 0], lqr.input_cost[0, 0]
     systems = float(np.diag(formation.laplacian).max()) + 1
     stiffness = np.sqrt(q / r) + systems * delta
     return np.diag([(stiffness**2 * r - q) / systems] * 2 + [0.0, 0.0])
@@ -174,18 +174,15 @@ def relative_cost_of(formation: LinearFormation, delta: float) -> Array:
 
 def _plant(formation: LinearFormation) -> tuple[Array, Array]:
     """A and B of the one robot that all are, off the linearized diagram."""
-    masses = derive.masses(formation.scenario)
+    masses = formation.resolved.masses
     require_agreement(formation, "relative gain to design")
     if np.ptp(masses) > 0:
         raise IllPosedError(
             f"a distributed LQR is for identical robots; robots.mass runs from {masses.min():g} to {masses.max():g} kg"
         )
     force = formation.B[:STATES, :2]
-    local = lqr_gain(
-        masses[0],
-        derive.cost_matrix(formation.scenario.tracking.Q, STATES),
-        derive.cost_matrix(formation.scenario.tracking.R, 2),
-    )
+    lqr = same_lqr(formation.resolved)
+    local = lqr_gain(masses[0], lqr.state_cost, lqr.input_cost)
     return formation.tracking[:STATES, :STATES] + force @ local, force
 
 

@@ -6,7 +6,6 @@ linearization cannot speak of is listed in ``NOT_COVERED``.
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +13,12 @@ from pydrake.autodiffutils import ExtractGradient, InitializeAutoDiff
 from pydrake.systems.framework import Context, Diagram
 from pydrake.systems.primitives import Linearize
 
+from drake_formation.analysis.assumptions import require_linear_consensus
+from drake_formation.analysis.errors import IllPosedError
 from drake_formation.diagram import build_diagram
-from drake_formation.formation import graphs
-from drake_formation.parameters import find_block, robot_name, set_parameters
-from drake_formation.scenario import Scenario, derive, with_overrides
+from drake_formation.formation.formation import Formation
+from drake_formation.parameters import find_block, robot_name
+from drake_formation.scenario import Scenario, resolve, with_overrides
 
 Array = NDArray[np.float64]
 
@@ -57,6 +58,11 @@ class LinearFormation:
     B: Array
 
     @property
+    def resolved(self) -> Formation:
+        """The scenario resolved."""
+        return resolve(self.scenario)
+
+    @property
     def robots(self) -> int:
         """Number of robots N."""
         return len(self.tracking) // STATES
@@ -64,12 +70,12 @@ class LinearFormation:
     @property
     def delta(self) -> float:
         """The scenario's consensus gain δ (N/m)."""
-        return self.scenario.consensus.delta
+        return float(self.resolved.parts["coordination"][0].config.delta)
 
     @property
     def delta_v(self) -> float:
         """The scenario's velocity consensus gain δ_v (N s/m)."""
-        return self.scenario.consensus.delta_v
+        return float(self.resolved.parts["coordination"][0].config.delta_v)
 
     @cached_property
     def A(self) -> Array:
@@ -79,7 +85,8 @@ class LinearFormation:
     @cached_property
     def laplacian(self) -> Array:
         """Laplacian of the communication graph, shape (N, N)."""
-        return graphs.laplacian(derive.communication_graph(self.scenario))
+        laplacian: Array = self.resolved.channels.laplacian
+        return laplacian
 
     def closed_loop(self, delta: float, delta_v: float) -> Array:
         """The closed loop with other consensus gains (N/m, N s/m), shape (4N, 4N)."""
@@ -106,27 +113,27 @@ def linearize(scenario: Scenario) -> LinearFormation:
 
     Raises:
         ScenarioError: the scenario is wrong.
+        IllPosedError: its parts are not those that the analysis is of.
     """
     rest = at_rest(scenario)
+    formation = resolve(rest)
+    require_linear_consensus(formation)
     diagram = build_diagram(rest)
     context = diagram.CreateDefaultContext()
+    _require_states(diagram, formation)
     state_matrix = StateMatrix(diagram)
+    phase = diagram.GetSubsystemByName("phase").GetMyMutableContextFromRoot(context)
 
-    def linear(**changes: Any) -> Array:
-        off = {"springs.stiffness": 0.0, "springs.damping": 0.0, "consensus.delta": 0.0, "consensus.delta_v": 0.0}
-        named = {path.replace("__", "."): value for path, value in changes.items()}
-        set_parameters(diagram, context, with_overrides(rest, {**off, **named}))
-        return state_matrix.at(context)
-
-    def with_gains(delta: float, delta_v: float) -> Array:
+    def with_gains(delta: float, delta_v: float, *, object_in_place: bool = False) -> Array:
         # Past the checks: robots that do not all talk may be linearized, only not made to agree.
-        for i in range(derive.robot_count(rest.formation)):
+        for i in range(formation.robots):
             block = find_block(diagram, f"{robot_name(i)}/consensus").GetMyMutableContextFromRoot(context)
             block.get_mutable_numeric_parameter(0).SetFromVector([delta, delta_v])
+        phase.get_mutable_numeric_parameter(0).SetFromVector([float(object_in_place)])
         return state_matrix.at(context)
 
-    springs = linear(springs__stiffness=rest.springs.stiffness, springs__damping=rest.springs.damping)
-    tracking = linear()
+    springs = with_gains(0.0, 0.0, object_in_place=True)
+    tracking = with_gains(0.0, 0.0)
     return LinearFormation(
         scenario=rest,
         tracking=tracking,
@@ -172,9 +179,16 @@ class StateMatrix:
         return result
 
 
+def _require_states(diagram: Diagram, formation: Formation) -> None:
+    """Refuse parts with states beyond position and velocity, which no matrix here has rows for."""
+    states = diagram.num_continuous_states()
+    if states != STATES * formation.robots or diagram.num_discrete_state_groups():
+        raise IllPosedError(f"the parts have states of their own ({states} in all); what is certified has four a robot")
+
+
 def _force_matrix(diagram: Diagram, scenario: Scenario) -> Array:
     """Each plant's own force port, block by block: the robots' forces are wired to their controllers."""
-    robots = derive.robot_count(scenario.formation)
+    robots = resolve(scenario).robots
     whole = diagram.CreateDefaultContext()
     result = np.zeros((STATES * robots, 2 * robots))
     for i in range(robots):

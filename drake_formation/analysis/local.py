@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from drake_formation.analysis.assumptions import local_lqr
 from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.linearization import STATES, Array, LinearFormation
 from drake_formation.parameters import block_parameters, robot_name
-from drake_formation.scenario import derive
 
 INPUTS = 2
 """Inputs of a robot: force along x and y (N)."""
@@ -130,7 +130,7 @@ class LocalLoop:
 
 
 def local_loops(formation: LinearFormation) -> tuple[LocalLoop, ...]:
-    """The local loop of every robot, one entry for all robots of one mass.
+    """The local loop of every robot, one entry for all robots of one mass and weights.
 
     A − B K and B are read off the linearized diagram and K off its tracking block. Were that K not the one in the
     loop, A = (A − B K) + B K would not be the plant's and the Riccati residual would not vanish.
@@ -138,18 +138,26 @@ def local_loops(formation: LinearFormation) -> tuple[LocalLoop, ...]:
     Raises:
         IllPosedError: the Riccati equation has no stabilizing solution.
     """
-    masses = derive.masses(formation.scenario)
-    alike = [np.flatnonzero(masses == mass) for mass in sorted(set(masses.tolist()))]
+    masses = formation.resolved.masses
+    lqrs = [local_lqr(formation.resolved, robot).config for robot in range(formation.robots)]
+    kinds = sorted(range(formation.robots), key=lambda robot: (masses[robot], robot))
+    firsts = [i for n, i in enumerate(kinds) if not any(_alike(masses, lqrs, i, k) for k in kinds[:n])]
+    alike = [np.array([k for k in range(formation.robots) if _alike(masses, lqrs, i, k)]) for i in firsts]
     return tuple(_local_loop(formation, tuple(robots.tolist()), float(masses[robots[0]])) for robots in alike)
+
+
+def _alike(masses: Array, lqrs: list[Any], one: int, other: int) -> bool:
+    """Whether two robots have the same mass and weights."""
+    return bool(masses[one] == masses[other]) and bool(lqrs[one] == lqrs[other])
 
 
 def _local_loop(formation: LinearFormation, robots: tuple[int, ...], mass: float) -> LocalLoop:
     i = robots[0]
     own = slice(STATES * i, STATES * (i + 1))
     closed, b = formation.tracking[own, own], formation.B[own, INPUTS * i : INPUTS * (i + 1)]
-    k = block_parameters(formation.scenario)[f"{robot_name(i)}/tracking"][0]
-    q = derive.cost_matrix(formation.scenario.tracking.Q, STATES)
-    r = derive.cost_matrix(formation.scenario.tracking.R, INPUTS)
+    k = block_parameters(formation.resolved)[f"{robot_name(i)}/tracking"][0]
+    lqr = local_lqr(formation.resolved, i)
+    q, r = lqr.state_cost, lqr.input_cost
     a = closed + b @ k
     p = _riccati(a, b, q, r)
     change, cost = closed.T @ p + p @ closed, q + k.T @ r @ k

@@ -11,7 +11,7 @@ from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.impulse import impulse_peaks
 from drake_formation.analysis.linearization import LinearFormation
 from drake_formation.analysis.norms import StateSpace, hinf_norm
-from drake_formation.scenario import Scenario, derive
+from drake_formation.scenario import Scenario, resolve
 
 Array = NDArray[np.float64]
 
@@ -114,14 +114,14 @@ class HandOff:
         from scipy.linalg import expm
 
         scenario = self.scenario
-        if scenario.transport.reference.kind != "set_point" or len(derive.slots(scenario)) != formation.robots:
+        if scenario.transport.reference.kind != "set_point" or resolve(scenario).robots != formation.robots:
             raise IllPosedError(
                 "the error from the hand-off on is defined for a set point as reference and the formation's own "
                 f"number of robots; scenario {scenario.name!r} has reference {scenario.transport.reference.kind} and "
-                f"{len(derive.slots(scenario))} robots, the formation {formation.robots}"
+                f"{resolve(scenario).robots} robots, the formation {formation.robots}"
             )
-        centre = derive.aggregation_centre(scenario)
-        start = _at_rest(derive.starts(scenario) - centre - derive.slots(scenario))
+        centre = resolve(scenario).centre
+        start = _at_rest(resolve(scenario).starts - centre - resolve(scenario).slots)
         gathering = formation.tracking + formation.consensus(formation.delta, formation.delta_v)
         step = _at_rest(np.broadcast_to(centre - np.array(scenario.transport.goal), (formation.robots, 2)))
         result: Array = expm(gathering * scenario.aggregation.duration) @ start + step

@@ -65,9 +65,7 @@ def renumberings(complete: LinearFormation) -> list[Renumbering]:
     robots = range(complete.robots)
     if complete.robots > MOST_RENUMBERED:
         return [tuple(robots)]
-    from drake_formation.scenario import derive
-
-    slots = derive.slots(complete.scenario)
+    slots = complete.resolved.slots
     return [way for way in permutations(robots) if any(_unchanged(complete, way, turn) for turn in _turns(slots, way))]
 
 

@@ -11,7 +11,7 @@ from drake_formation.analysis.force_bound import require_stable, supremum
 from drake_formation.analysis.force_limit import bisected, require_question
 from drake_formation.analysis.force_map import ForceMap, force_map
 from drake_formation.analysis.linearization import STATES, LinearFormation, linearize
-from drake_formation.scenario import Scenario, derive
+from drake_formation.scenario import Scenario, resolve
 
 Array = NDArray[np.float64]
 
@@ -82,8 +82,8 @@ def own_force(
     delta = formation.delta if delta is None else delta
     outputs = (forces or force_map(formation)).at(delta, formation.delta_v)
     gathering = _without_springs(formation)
-    centre = derive.aggregation_centre(scenario)
-    start = _deviation(derive.starts(scenario) - derive.slots(scenario) - centre)
+    centre = resolve(scenario).centre
+    start = _deviation(resolve(scenario).starts - resolve(scenario).slots - centre)
     at_hand_off, aggregation = start, 0.0
     if scenario.aggregation.duration > 0:
         at_hand_off = _moved(gathering, delta, scenario.aggregation.duration) @ start
@@ -132,7 +132,7 @@ def own_largest_gain(scenario: Scenario, *, force_limit_n: float, aggregation: b
             f"{force_limit_n:g} N is too little: the run takes {force(without):.4g} N without any position consensus "
             "(δ = 0)"
         )
-    if without.consensus_error_m < ROUNDING and np.ptp(derive.masses(scenario)) == 0:
+    if without.consensus_error_m < ROUNDING and np.ptp(resolve(scenario).masses) == 0:
         raise IllPosedError(
             "the run has no consensus error, so no δ takes a force; largest_gain takes one to allow for"
         )

@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from drake_formation.analysis.assumptions import same_lqr
 from drake_formation.analysis.linearization import Array, LinearFormation, linearize
-from drake_formation.scenario import ScenarioError, derive, with_overrides
+from drake_formation.scenario import ScenarioError, with_overrides
 
 TRIED = 10.0 ** np.arange(0.0, 6.01, 0.25)
 """Values of δ_v that are tried (N s/m)."""
@@ -60,8 +61,8 @@ def remedies(formation: LinearFormation) -> tuple[Remedy, ...]:
 
 
 def _tried(formation: LinearFormation) -> Iterator[Remedy]:
-    weights = formation.scenario.tracking
-    q, r = derive.cost_matrix(weights.Q, 4), derive.cost_matrix(weights.R, 2)
+    lqr = same_lqr(formation.resolved)
+    q, r = lqr.state_cost, lqr.input_cost
     diagonal = {"tracking.Q": np.diag(q).tolist(), "tracking.R": np.diag(r).tolist()}
     try:
         decay = _decay(linearize(with_overrides(formation.scenario, diagonal)).A)

@@ -14,9 +14,8 @@ import numpy as np
 from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.linearization import Array, LinearFormation, linearize
 from drake_formation.analysis.shape import ROUNDING, rotation, spring_stiffness
-from drake_formation.formation import graphs
 from drake_formation.formation.graphs import Edge
-from drake_formation.scenario import Scenario, derive, with_overrides
+from drake_formation.scenario import Scenario, with_overrides
 
 TRANSLATIONS = 2
 
@@ -85,7 +84,7 @@ def spring_linearization(formation: LinearFormation) -> SpringLinearization:
     stiff = stiff_springs(formation)
     if not stiff:
         raise IllPosedError("the object has no springs with stiffness: give springs.graph edges and springs.stiffness")
-    slots = derive.slots(scenario)
+    slots = formation.resolved.slots
     rank = int(np.linalg.matrix_rank(rigidity_matrix(slots, stiff), tol=ROUNDING))
     exact, linear = (_stiffness(scenario, law) for law in ("hookean", "linear"))
     turning = rotation(slots)
@@ -119,8 +118,8 @@ def rigidity_matrix(slots: Array, edges: list[Edge]) -> Array:
 
 def stiff_springs(formation: LinearFormation) -> list[Edge]:
     """The springs that have stiffness, robots numbered from 0."""
-    edges = graphs.edges(derive.spring_graph(formation.scenario))
-    stiffness = derive.each(formation.scenario.springs.stiffness, len(edges))
+    edges = formation.resolved.springs.pairs.tolist()
+    stiffness = formation.resolved.field("spring", "stiffness")
     return [edge for edge, k in zip(edges, stiffness, strict=True) if k > 0]
 
 

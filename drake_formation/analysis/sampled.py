@@ -15,7 +15,6 @@ from drake_formation.analysis.blocks import blocks
 from drake_formation.analysis.delay_eigenvalues import require_stable
 from drake_formation.analysis.linearization import STATES, LinearFormation
 from drake_formation.formation import graphs
-from drake_formation.scenario import derive
 
 Array = NDArray[np.float64]
 
@@ -92,7 +91,7 @@ def _with_memory(flow: Array, into: Array, hears: Array, feels: Array) -> Sample
 
 def channels(formation: LinearFormation) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """The robot each channel goes to, and the one it comes from; numbered from 0, one channel each way an edge."""
-    graph = derive.communication_graph(formation.scenario)
+    graph = formation.resolved.channels.graph
     pairs = [(i, j) for i in range(formation.robots) for j in graphs.neighbours(graph, i)]
     to, of = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
     return to, of
@@ -129,7 +128,7 @@ def longest_period(formation: LinearFormation, *, up_to_s: float = 1.0) -> float
     alone, consensus = formation.tracking + formation.springs, formation.consensus(formation.delta, formation.delta_v)
     require_stable(alone + consensus)
     longest = up_to_s
-    for part in blocks([alone, consensus], derive.masses(formation.scenario)):
+    for part in blocks([alone, consensus], formation.resolved.masses):
         longest = min(longest, _first_unstable(part[0], part[1], longest))
     return longest if longest < up_to_s else None
 

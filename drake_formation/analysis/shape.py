@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.analysis.linearization import STATES, Array, LinearFormation
-from drake_formation.scenario import derive
 
 PARTS = ("centre", "rotation", "stretch", "consensus")
 
@@ -60,7 +59,7 @@ def parts(formation: LinearFormation) -> dict[str, Array]:
     """Orthonormal bases of the four parts, each of shape (2N, dimensions); together they span all displacements."""
     robots = formation.robots
     centre = np.kron(np.ones((robots, 1)), np.eye(2)) / np.sqrt(robots)
-    turning = rotation(derive.slots(formation.scenario))[:, None] if robots > 1 else np.zeros((2, 0))
+    turning = rotation(formation.resolved.slots)[:, None] if robots > 1 else np.zeros((2, 0))
     rigid = np.hstack([centre, turning])
     others = _complement(rigid)
     resisted, vectors = np.linalg.eigh(others.T @ _scaled_springs(formation) @ others)

@@ -3,10 +3,10 @@
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from drake_formation.config.errors import nearest
 from drake_formation.paper.report import write_report
 from drake_formation.paper.store import Store
 from drake_formation.paper.study import PARTS
-from drake_formation.scenario.errors import nearest
 
 Progress = Callable[[int, int], None]
 """Called with how many of the missing runs are done, and how many there are."""

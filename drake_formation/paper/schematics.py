@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from drake_formation.formation import graphs
 from drake_formation.paper.runs import FORMATIONS, TOPOLOGIES, topology
-from drake_formation.scenario import derive, load_scenario
+from drake_formation.scenario import load_scenario, resolve
 
 Array = NDArray[np.float64]
 
@@ -17,7 +17,7 @@ def mass_spring_model() -> Figure:
     """The quadrilateral as masses and springs (Fig. 1)."""
     scenario = load_scenario("quadrilateral")
     figure = Figure(figsize=(4, 4), layout="constrained")
-    draw_graph(figure.subplots(), derive.slots(scenario), derive.spring_graph(scenario), springs=True)
+    draw_graph(figure.subplots(), resolve(scenario).slots, resolve(scenario).springs.graph, springs=True)
     return figure
 
 
@@ -26,8 +26,8 @@ def formations() -> Figure:
     figure = Figure(figsize=(9, 3.2), layout="constrained")
     for axes, name in zip(figure.subplots(1, len(FORMATIONS)), FORMATIONS, strict=True):
         scenario = load_scenario(name)
-        graph = derive.spring_graph(scenario)
-        draw_graph(axes, derive.slots(scenario), graph, springs=True)
+        graph = resolve(scenario).springs.graph
+        draw_graph(axes, resolve(scenario).slots, graph, springs=True)
         axes.set_title(f"{name}: {graph.number_of_edges()} spring(s)", fontsize="medium")
     return figure
 
@@ -37,8 +37,8 @@ def topologies() -> Figure:
     figure = Figure(figsize=(12, 2.8), layout="constrained")
     for axes, name in zip(figure.subplots(1, len(TOPOLOGIES)), TOPOLOGIES, strict=True):
         scenario = topology(name)
-        graph = derive.communication_graph(scenario)
-        draw_graph(axes, derive.slots(scenario), graph)
+        graph = resolve(scenario).channels.graph
+        draw_graph(axes, resolve(scenario).slots, graph)
         axes.set_title(f"{name}\nλ₂ = {graphs.algebraic_connectivity(graph):.3g}", fontsize="medium")
     return figure
 

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from drake_formation.metrics import Metrics, metrics
 from drake_formation.paper.runs import transport
 from drake_formation.paper.store import Store
-from drake_formation.scenario import Scenario, derive, with_overrides
+from drake_formation.scenario import Scenario, resolve, with_overrides
 
 DELTAS = (0.0, 1e4)
 
@@ -30,7 +30,7 @@ MEASURES: dict[str, Callable[[Metrics], float]] = {
 def varied(parameter: str, value: float, delta: float) -> Scenario:
     """The line with rubber and one inferred parameter changed."""
     base = transport("line", "rubber", delta)
-    x, y = derive.aggregation_centre(base)
+    x, y = resolve(base).centre
     overrides: dict[str, dict[str, Any]] = {
         "ρ0 (m)": {"avoidance.range": value},
         "η (N m²)": {"avoidance.gain": value},

@@ -9,10 +9,9 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from importlib.metadata import version
 from pathlib import Path
 
-import numpy as np
 import xarray as xr
 
-from drake_formation.scenario import Scenario, derive, to_yaml
+from drake_formation.scenario import Scenario, resolve, to_yaml
 from drake_formation.simulation import simulate
 
 # Drake 1.51 leaks Python systems; workers are replaced before that matters.
@@ -81,6 +80,8 @@ def run_to_file(scenario: Scenario, path: Path, engine: str) -> None:
 
 def _effort(scenario: Scenario) -> float:
     """Grows with how long a run takes: with the robots, and with the fastest mode of real and virtual springs."""
-    robots = derive.robot_count(scenario.formation)
-    stiffest = float(np.max(scenario.springs.stiffness)) + 2 * scenario.consensus.delta
+    formation = resolve(scenario)
+    robots = formation.robots
+    delta = formation.field("coordination", "delta").max()
+    stiffest = float(formation.field("spring", "stiffness").max(initial=0.0) + 2 * delta)
     return float(robots**2 * (1 + robots * stiffest) ** 0.5)

@@ -7,7 +7,7 @@ from drake_formation.metrics import Metrics, metrics
 from drake_formation.paper.published import published
 from drake_formation.paper.runs import FORMATIONS, GAINS, MATERIALS, transport, transports
 from drake_formation.paper.store import Store
-from drake_formation.scenario import Scenario, derive, load_scenario
+from drake_formation.scenario import Scenario, load_scenario, resolve
 
 AGREES = 0.2
 """A cell agrees when it differs by at most this share of the published value; the paper prints two to three digits
@@ -124,7 +124,7 @@ def force_reason(quantity: Quantity, material: str, delta: float, figures: Metri
     """Why a peak force differs."""
     if delta == 0:
         return "the local LQR answers the springs' push at the hand-off, which depends on the residual there"
-    robots = derive.robot_count(load_scenario(quantity.formation).formation)
+    robots = resolve(load_scenario(quantity.formation)).robots
     numbers = published()[quantity.formation]
     error, force = numbers["consensus_error"][material][delta] / 100, numbers["peak_force"][material][delta]
     cost = delta * robots * error

@@ -14,8 +14,8 @@ from drake_formation.paper.runs import (
 from drake_formation.paper.store import Store
 from drake_formation.paper.verdicts import FAILS, HOLDS, Claim, verdict
 from drake_formation.parameters import find_block
-from drake_formation.scenario import Scenario, derive, load_scenario, with_overrides
-from drake_formation.systems.tracking import robot_matrices
+from drake_formation.parts.tracking.lqr import robot_matrices
+from drake_formation.scenario import Scenario, load_scenario, resolve, with_overrides
 
 MARGIN = 1e-3
 """Eigenvalues closer to the imaginary axis than this (1/s) are on it; a double zero is found to about 1e-6 only."""
@@ -75,7 +75,7 @@ def _formation_matrix(*, local: bool) -> NDArray[np.complex128]:
     diagram = build_diagram(scenario)
     context = diagram.CreateDefaultContext()
     if not local:
-        for robot in range(derive.robot_count(scenario.formation)):
+        for robot in range(resolve(scenario).robots):
             tracking = find_block(diagram, f"robot_{robot + 1}/tracking")
             parameters = tracking.GetMyMutableContextFromRoot(context).get_mutable_numeric_parameter(0)
             parameters.SetFromVector(np.zeros(8))
@@ -100,8 +100,8 @@ def lemmas(_store: Store) -> Claim:
     rng = np.random.default_rng(0)
     worst, second = 0.0, np.inf
     for name in TOPOLOGIES:
-        graph = derive.communication_graph(topology(name))
-        laplacian = graphs.laplacian(graph)
+        channels = resolve(topology(name)).channels
+        graph, laplacian = channels.graph, channels.laplacian
         first, *others = np.linalg.eigvalsh(laplacian)
         worst, second = max(worst, abs(first)), min(second, *others)
         x = rng.normal(size=len(laplacian))
@@ -123,7 +123,7 @@ def lemma_2(_store: Store) -> Claim:
     """Lemma 2 on the adjacency matrices: its premise."""
     definite = []
     for name in TOPOLOGIES:
-        graph = derive.communication_graph(topology(name))
+        graph = resolve(topology(name)).channels.graph
         adjacency = np.diag(graphs.in_degrees(graph)) - graphs.laplacian(graph)
         low, *_, high = np.linalg.eigvalsh(adjacency)
         definite.append(low >= 0 or high <= 0)

@@ -1,8 +1,9 @@
 """Scenarios: what a user writes, checked before Drake sees it."""
 
-from drake_formation.scenario.errors import Fault, ScenarioError
+from drake_formation.config.errors import Fault, ScenarioError
 from drake_formation.scenario.export import dump_scenario, json_schema, to_yaml
-from drake_formation.scenario.load import load_scenario, require_sound, shipped_scenarios, with_overrides
+from drake_formation.scenario.load import load_scenario, shipped_scenarios, with_overrides
+from drake_formation.scenario.resolve import resolve
 from drake_formation.scenario.schema import Scenario
 
 __all__ = [
@@ -12,7 +13,7 @@ __all__ = [
     "dump_scenario",
     "json_schema",
     "load_scenario",
-    "require_sound",
+    "resolve",
     "shipped_scenarios",
     "to_yaml",
     "with_overrides",

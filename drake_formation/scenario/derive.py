@@ -1,15 +1,13 @@
-"""What follows from a scenario's fields: slots, starting positions, graphs and matrices as arrays.
-
-Every function takes a scenario that has passed :mod:`drake_formation.scenario.checks`.
-"""
+"""What follows from a scenario's fields: slots, starting positions and graphs; for its checks and for resolving it."""
 
 import functools
 
 import networkx as nx
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from drake_formation.formation import graphs, shapes
+from drake_formation.formation.links import Channels
 from drake_formation.scenario.schema import (
     FormationStart,
     Grid,
@@ -89,32 +87,23 @@ def spring_graph(scenario: Scenario) -> nx.Graph:
     return graph(scenario.springs.graph, robot_count(scenario.formation))
 
 
-def communication_graph(scenario: Scenario) -> nx.Graph:
-    """The communication graph: robots that exchange their states."""
-    return graph(scenario.consensus.graph, robot_count(scenario.formation))
+def channels(scenario: Scenario) -> Channels:
+    """The channels with their weights: those of a name or an edge go both ways."""
+    topology, robots = scenario.consensus.graph, robot_count(scenario.formation)
+    if isinstance(topology, str):
+        edges = graphs.edges(graph(topology, robots))
+        return Channels.of(robots, [(i, j, 1.0) for pair in edges for i, j in (pair, pair[::-1])])
+    directed: list[tuple[int, int, float]] = []
+    for link in topology:
+        if isinstance(link, tuple):
+            i, j = link[0] - 1, link[1] - 1
+            directed += [(i, j, 1.0), (j, i, 1.0)]
+        else:
+            directed.append((link.listener - 1, link.speaker - 1, link.weight))
+    return Channels.of(robots, directed)
 
 
-def masses(scenario: Scenario) -> Array:
-    """Mass of every robot (kg), shape (N,)."""
-    return each(scenario.robots.mass, robot_count(scenario.formation))
-
-
-def each(value: ArrayLike, count: int) -> Array:
-    """One number for all, or one for each, as an array of shape (count,)."""
-    return np.broadcast_to(np.asarray(value, dtype=float), (count,))
-
-
-def cost_matrix(value: ArrayLike, size: int) -> Array:
-    """An LQR cost, shape (size, size), from a multiple of the identity, a diagonal or the matrix itself."""
-    array = np.asarray(value, dtype=float)
-    return array if array.ndim == 2 else np.diag(np.broadcast_to(array, (size,)))
-
-
-def hand_off_time(scenario: Scenario) -> float:
-    """Time at which the object is placed on the robots (s)."""
-    return scenario.simulator.start_time + scenario.aggregation.duration
-
-
-def end_time(scenario: Scenario) -> float:
-    """Time at which the scenario ends (s)."""
-    return hand_off_time(scenario) + scenario.transport.duration
+def obstacles(scenario: Scenario) -> Array:
+    """Centre and radius of each obstacle (m), shape (obstacles, 3)."""
+    rows = [[*obstacle.position, obstacle.radius] for obstacle in scenario.avoidance.obstacles]
+    return np.array(rows, dtype=float).reshape(-1, 3)

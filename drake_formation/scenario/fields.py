@@ -8,9 +8,11 @@ from annotated_types import Ge, Gt, Le, MinLen
 from pydantic import Tag
 from pydantic.fields import FieldInfo
 
-from drake_formation.scenario.errors import Path
+from drake_formation.config.each import DEFAULT
+from drake_formation.config.errors import Path
+from drake_formation.config.values import Section
 from drake_formation.scenario.schema import Scenario
-from drake_formation.scenario.values import Section
+from drake_formation.scenario.written import MIXED, PartOf
 
 
 @dataclass(frozen=True)
@@ -49,7 +51,7 @@ def locate(loc: Path) -> Place:
     for part in loc:
         bare, _ = _unwrapped(annotation)
         if _is_union(bare):
-            annotation = next(branch for branch in get_args(bare) if _tag(branch) == part)
+            annotation = _branch(bare, part)
             continue
         path = (*path, part)
         if not _is_section(bare):
@@ -68,11 +70,13 @@ def phrase(annotation: Any) -> str:
     """What a type allows, in words."""
     bare, bounds = _unwrapped(annotation)
     if _is_union(bare):
-        return " or ".join(phrase(branch) for branch in get_args(bare))
+        return " or ".join(dict.fromkeys(phrase(branch) for branch in _branches(bare)))
     if get_origin(bare) is Literal:
         return ", ".join(map(str, get_args(bare)))
     if get_origin(bare) is tuple:
         return _list_phrase(get_args(bare), bounds)
+    if get_origin(bare) is dict:
+        return f"a mapping {{1: …, {DEFAULT}: …}}"
     if _is_section(bare):
         return f"a mapping {{{', '.join(bare.model_fields)}}}"
     return " ".join([_NAMES[bare], " and ".join(bounds)]).strip()
@@ -86,16 +90,18 @@ def names(annotation: Any) -> list[str]:
     if _is_section(bare):
         keys = [key for key in CHOOSERS if key in bare.model_fields]
         return [name for key in keys for name in names(bare.model_fields[key].annotation)]
-    return [name for branch in get_args(bare) for name in names(branch)] if _is_union(bare) else []
+    return [name for branch in _branches(bare) for name in names(branch)] if _is_union(bare) else []
 
 
 def chooser(annotation: Any) -> str:
     """The key that chooses between the sections of a union."""
     bare, _ = _unwrapped(annotation)
+    if isinstance(bare, PartOf):
+        return bare.role.chooser
     return next(key for key in CHOOSERS for branch in get_args(bare) if key in branch.model_fields)
 
 
-CHOOSERS = ("shape", "kind")
+CHOOSERS = ("shape", "kind", "law")
 """Keys by which a section says which of several it is."""
 
 _NAMES: dict[Any, str] = {
@@ -118,6 +124,9 @@ def _unwrapped(annotation: Any) -> tuple[Any, list[str]]:
     bounds: list[str] = []
     if get_origin(annotation) is Annotated:
         annotation, *metadata = get_args(annotation)
+        for item in metadata:
+            if isinstance(item, PartOf):
+                return item, bounds
         for item in metadata:
             bounds += [_bound(part) for part in (item.metadata if isinstance(item, FieldInfo) else [item])]
     if _is_union(annotation) and type(None) in get_args(annotation):
@@ -143,6 +152,8 @@ def _bound(constraint: Any) -> str:
 def _item(bare: Any, index: str | int) -> Any:
     """Type of an entry of a list."""
     items = get_args(bare)
+    if get_origin(bare) is dict:
+        return items[1]
     return items[0] if items[-1] is Ellipsis else items[min(int(index), len(items) - 1)]
 
 
@@ -154,8 +165,22 @@ def _tag(branch: Any) -> str:
     return names(branch)[0]
 
 
+def _branches(bare: Any) -> tuple[Any, ...]:
+    """What a union is of."""
+    if isinstance(bare, PartOf):
+        return tuple(model for kind, model in bare.models().items() if kind != MIXED)
+    return get_args(bare)
+
+
+def _branch(bare: Any, tag: str | int) -> Any:
+    """The branch of a union that pydantic calls by a tag."""
+    if isinstance(bare, PartOf):
+        return bare.models()[str(tag)]
+    return next(branch for branch in get_args(bare) if _tag(branch) == tag)
+
+
 def _is_union(bare: Any) -> bool:
-    return get_origin(bare) in (Union, types.UnionType)
+    return isinstance(bare, PartOf) or get_origin(bare) in (Union, types.UnionType)
 
 
 def _is_section(bare: Any) -> bool:

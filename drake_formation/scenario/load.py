@@ -3,8 +3,7 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from drake_formation.scenario.checks import check
-from drake_formation.scenario.errors import Fault, ScenarioError, nearest
+from drake_formation.config.errors import Fault, ScenarioError, nearest
 from drake_formation.scenario.overrides import Overrides, apply, plain
 from drake_formation.scenario.schema import Scenario
 from drake_formation.scenario.source import Document, read
@@ -39,16 +38,6 @@ def with_overrides(scenario: Scenario, overrides: Overrides) -> Scenario:
         ScenarioError: with all faults of the variant.
     """
     return validate(apply(Document(_called(scenario), plain(scenario)), overrides))
-
-
-def require_sound(scenario: Scenario) -> None:
-    """Check a scenario that was built in Python.
-
-    Raises:
-        ScenarioError: with all faults that concern several fields; pydantic has checked the single ones.
-    """
-    if faults := check(scenario):
-        raise Document(_called(scenario), {}).attributed(faults)
 
 
 def shipped_scenarios() -> dict[str, Path]:

@@ -1,5 +1,6 @@
 """Changing single values of a scenario by their dotted paths, from Python or from the command line."""
 
+import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -7,10 +8,10 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel
 
-from drake_formation.scenario.errors import Fault, Path, ScenarioError, dotted, shortened, shown
+from drake_formation.config.errors import Fault, Path, ScenarioError, dotted, shortened, shown
+from drake_formation.config.values import Section
 from drake_formation.scenario.schema import Scenario
 from drake_formation.scenario.source import Document, load_yaml
-from drake_formation.scenario.values import Section
 
 Overrides = Mapping[str, Any] | Sequence[str]
 """Dotted paths to values (``{"springs.stiffness": 3e4}``), or texts ``PATH=VALUE`` with a YAML value."""
@@ -127,14 +128,15 @@ def _step(container: Any, key: str, path: Path, override: _Override) -> str | in
 
 def _blank(path: Path) -> Any:
     """What to start from where the document leaves a default: the default, or for sections an empty mapping."""
-    default: Any = _DEFAULTS
+    default: Any = _defaults()
     for key in path:
         default = default.get(key, {}) if isinstance(default, dict) else {}
     return {} if isinstance(default, dict) else plain(default)
 
 
-_DEFAULTS = {
-    name: field.default.model_dump()
-    for name, field in Scenario.model_fields.items()
-    if isinstance(field.default, Section)
-}
+@functools.cache
+def _defaults() -> dict[str, Any]:
+    """The sections that a scenario may leave out, as they are then."""
+    fields = {name: field for name, field in Scenario.model_fields.items() if not field.is_required()}
+    values = {name: field.get_default(call_default_factory=True) for name, field in fields.items()}
+    return {name: value.model_dump() for name, value in values.items() if isinstance(value, Section)}

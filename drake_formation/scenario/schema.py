@@ -9,19 +9,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from drake_formation.scenario.values import (
-    CostMatrix,
-    Gap,
-    Graph,
-    Known,
-    Length,
-    NonNegative,
-    NonNegativeEach,
-    Point,
-    Positive,
-    PositiveEach,
-    Section,
-)
+from drake_formation.config.values import Edge, Graph, Length, NonNegative, Point, Positive, Section, TopologyName
+from drake_formation.parts.registry import when_changed
+from drake_formation.scenario.written import PartOf
 
 MOST_ROBOTS = 1000
 """A complete graph among more robots has a million channels and more."""
@@ -116,44 +106,51 @@ class Robots(Section):
     """The plants (paper, Eq. 3)."""
 
     start: Start = Field(description="starting positions: a list (m), {random: ...} or {centre: ...}; all at rest")
-    mass: PositiveEach = Field(default=40.0, description="mass m_i (kg), one for all or one a robot; published: 40")
 
 
 class Springs(Section):
     """The carried object as springs between robots (paper, Eq. 2)."""
 
     graph: Graph = Field(default="complete", description="which robots the object couples; paper: complete")
-    law: Literal["hookean", "linear"] = Field(
-        default="hookean", description="hookean acts along the line (Eq. 2); linear is the paper's Eqs. 4-7"
-    )
-    stiffness: NonNegativeEach = Field(
-        default=1.45, description="k_ij (N/m), one for all or one an edge; published: 1.45 rubber, 3e4 steel"
-    )
-    damping: NonNegativeEach = Field(
-        default=0.0, description="c_ij (N s/m), one for all or one an edge; published: none"
-    )
 
 
-class Tracking(Section):
-    """The local LQR (paper, Eqs. 9-12)."""
+class DirectedChannel(Section):
+    """A channel one way, with a weight."""
 
-    Q: CostMatrix = Field(
-        default=1.0, description="state cost, 4 x 4: a number times I, a diagonal or a matrix; published: I"
-    )
-    R: CostMatrix = Field(
-        default=1.0, description="input cost, 2 x 2: a number times I, a diagonal or a matrix; published: I"
-    )
-    feed_forward: bool = Field(
-        default=False, description="add m_i a_r, the force that the reference's acceleration takes; published: none"
-    )
+    speaker: int = Field(description="robot j that sends its state, from 1")
+    listener: int = Field(description="robot i that hears it, from 1")
+    weight: NonNegative = Field(default=1.0, description="γ_ij, how much it counts (Sec. 2.1); paper: 1")
+
+
+def _channel_kind(value: Any) -> str:
+    return "edge" if isinstance(value, list | tuple) else "directed"
+
+
+def _named_or_channels(value: Any) -> str:
+    return "channels" if isinstance(value, list | tuple) else "named"
+
+
+Link = Annotated[
+    Annotated[Edge, Tag("edge")] | Annotated[DirectedChannel, Tag("directed")], Discriminator(_channel_kind)
+]
+Channels = Annotated[
+    Annotated[TopologyName, Tag("named")] | Annotated[tuple[Link, ...], Field(strict=False), Tag("channels")],
+    Discriminator(_named_or_channels),
+]
+"""A communication graph: by name, or channel by channel."""
 
 
 class Consensus(Section):
-    """The virtual springs over the communication graph (paper, Eqs. 15-17)."""
+    """The communication between robots (paper, Eqs. 15-17)."""
 
-    graph: Graph = Field(default="complete", description="which robots talk, both ways; paper: complete")
-    delta: NonNegative = Field(default=0.0, description="consensus gain δ (N/m); published: 0, 1e4, 2e4")
-    delta_v: NonNegative = Field(default=0.0, description="velocity consensus gain δ_v (N s/m); paper: 0")
+    graph: Channels = Field(
+        default="complete",
+        description="which robots talk: a name, or edges [i, j] both ways and {speaker: j, listener: i, weight: γ_ij} "
+        "one way; paper: complete",
+    )
+    channel: Annotated[Any, PartOf("channel")] = Field(
+        default_factory=PartOf("channel").default, description="what becomes of a state on its way; paper: ideal"
+    )
 
 
 class Obstacle(Section):
@@ -164,15 +161,9 @@ class Obstacle(Section):
 
 
 class Avoidance(Section):
-    """Khatib's repulsive potential around obstacles sensed during transport."""
+    """Obstacles sensed during transport."""
 
     obstacles: tuple[Obstacle, ...] = Field(default=(), strict=False, description="the obstacles")
-    range: Length = Field(default=1.3, description="sensing range ρ0 (m); inferred: 1.3")
-    gain: NonNegative = Field(default=31.56, description="repulsive gain η (N m²); inferred: 31.56")
-    sensing: Literal["in_range", "nearest"] = Field(
-        default="in_range",
-        description="in_range: every robot within range feels an obstacle; nearest: only the one nearest to it",
-    )
 
 
 class Aggregation(Section):
@@ -183,72 +174,13 @@ class Aggregation(Section):
     )
 
 
-class SetPointReference(Section):
-    """The goal itself, from the hand-off on; what the published numbers come from."""
-
-    kind: Literal["set_point"] = Field(description="kind of reference")
-
-
-MotionDuration = Annotated[
-    Positive | None,
-    Field(
-        description="how long the motion takes from the hand-off (s), the goal held afterwards; chosen: the "
-        "transport's duration if not given"
-    ),
-]
-
-
-class MinimumJerkReference(Section):
-    """A straight line to the goal with the least jerk."""
-
-    kind: Literal["minimum_jerk"] = Field(description="kind of reference")
-    duration: MotionDuration = None
-
-
-class WaypointsReference(Section):
-    """A smooth curve through points, such as the paper's s-curve (Fig. 19)."""
-
-    kind: Literal["waypoints"] = Field(description="kind of reference")
-    points: tuple[Point, ...] = Field(
-        strict=False,
-        min_length=1,
-        description="where the formation centre passes between where it gathers and the goal (m)",
-    )
-    duration: MotionDuration = None
-
-
-class PotentialFieldReference(Section):
-    """A way around known obstacles, planned by an artificial potential field before the run."""
-
-    kind: Literal["potential_field"] = Field(description="kind of reference")
-    known: Known = Field(
-        default="all", description="which obstacles the plan knows, numbered from 1; robots sense all, known or not"
-    )
-    clearance: Gap = Field(
-        default=1.3,
-        description="what the plan keeps between formation and known obstacles (m), at least three quarters of it "
-        "where smoothing cuts corners; chosen: 1.3, the sensing range, so that who follows the plan feels none",
-    )
-    reach: Gap = Field(
-        default=2.6, description="clearance below which the plan gives way (m), more than clearance; chosen: 2.6"
-    )
-    duration: MotionDuration = None
-
-
-Reference = Annotated[
-    SetPointReference | MinimumJerkReference | WaypointsReference | PotentialFieldReference,
-    Field(discriminator="kind"),
-]
-"""Where the formation centre should be during transport."""
-
-
 class Transport(Section):
     """The phase in which the object is carried to the goal."""
 
     goal: Point = Field(description="where the formation centre is carried to (m)")
     duration: Positive = Field(default=60.0, description="how long (s); chosen: 60")
-    reference: Reference = Field(
-        default=SetPointReference(kind="set_point"),
+    reference: Annotated[Any, PartOf("reference")] = Field(
+        default_factory=PartOf("reference").default,
         description="where the formation centre should be on the way; inferred: a set point",
     )
 
@@ -280,11 +212,32 @@ class Scenario(Section):
     )
     description: str = Field(default="", description="what it shows")
     formation: Shape = Field(description="shape of the formation: a slot for every robot")
-    robots: Robots
-    springs: Springs = Springs()
-    tracking: Tracking = Tracking()
-    consensus: Consensus = Consensus()
-    avoidance: Avoidance = Avoidance()
+    robots: Annotated[Any, PartOf("robot", Robots)] = Field(description="the plants")
+    springs: Annotated[Any, PartOf("spring", Springs)] = Field(
+        default_factory=PartOf("spring", Springs).default, description="the carried object"
+    )
+    tracking: Annotated[Any, PartOf("tracking")] = Field(
+        default_factory=PartOf("tracking").default, description="the local controllers"
+    )
+    consensus: Annotated[Any, PartOf("coordination", Consensus)] = Field(
+        default_factory=PartOf("coordination", Consensus).default, description="what robots do with what they hear"
+    )
+    avoidance: Annotated[Any, PartOf("avoidance", Avoidance)] = Field(
+        default_factory=PartOf("avoidance", Avoidance).default, description="obstacles, and what robots do about them"
+    )
     aggregation: Aggregation = Aggregation()
     transport: Transport
     simulator: Simulation = Simulation()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled as what was written: sections follow the parts there are, and have no place in a module."""
+        return type(self).model_validate, (self.model_dump(exclude_unset=True),)
+
+
+def _follow_parts() -> None:
+    """Make the sections anew, over the parts that there are now."""
+    for section in (Consensus, Transport, Scenario):
+        section.model_rebuild(force=True)
+
+
+when_changed(_follow_parts)

@@ -14,7 +14,7 @@ from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode
 from ruamel.yaml.resolver import VersionedResolver
 
-from drake_formation.scenario.errors import Fault, Path, ScenarioError, shown
+from drake_formation.config.errors import Fault, Path, ScenarioError, shown
 
 _MOST_VALUES = 300_000
 """More than any scenario needs; stops aliases that multiply without end."""

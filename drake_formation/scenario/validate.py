@@ -5,9 +5,9 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from drake_formation.scenario.checks import check
-from drake_formation.scenario.errors import MESSAGES, Fault, nearest, shown
+from drake_formation.config.errors import MESSAGES, Fault, nearest, shown
 from drake_formation.scenario.fields import Place, chooser, locate, names
+from drake_formation.scenario.resolve import check
 from drake_formation.scenario.schema import Scenario
 from drake_formation.scenario.source import Document
 

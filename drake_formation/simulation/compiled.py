@@ -4,10 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydrake.systems.framework import Context, Diagram
 
+from drake_formation.config.errors import Fault, shown
 from drake_formation.lowering import CompiledDiagram, Status, lower
 from drake_formation.parameters import robot_name
-from drake_formation.scenario import Scenario, ScenarioError, derive
-from drake_formation.scenario.errors import Fault, shown
+from drake_formation.scenario import Scenario, ScenarioError, resolve
 from drake_formation.simulation.engines import Progress, Start
 from drake_formation.simulation.recorder import RECORDED, NonFiniteStateError
 
@@ -72,7 +72,7 @@ class CompiledRun:
         settings = scenario.simulator
         self.context = context
         self.fixed_step = not settings.use_error_control
-        self.recording = CompiledRecording(lowered, derive.robot_count(scenario.formation))
+        self.recording = CompiledRecording(lowered, resolve(scenario).robots)
         self._lowered, self._method, self._progress = lowered, method, progress
         self._accuracy, self._max_step = settings.accuracy, settings.max_step_size
         self._updated_at = -np.inf

@@ -6,7 +6,7 @@ from typing import Protocol
 from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
 from pydrake.systems.framework import Context, Diagram
 
-from drake_formation.scenario import Scenario, derive
+from drake_formation.scenario import Scenario, resolve
 from drake_formation.simulation.recorder import Recorder, Recording
 
 Progress = Callable[[float], None]
@@ -81,7 +81,7 @@ ENGINES: dict[str, Callable[[Diagram], Start]] = {
 
 class _Blocks:
     def __init__(self, scenario: Scenario, diagram: Diagram, context: Context, progress: Progress | None) -> None:
-        self.recording = Recorder(diagram, derive.robot_count(scenario.formation), progress)
+        self.recording = Recorder(diagram, resolve(scenario).robots, progress)
         self._simulator = Simulator(diagram, context)
         config = SimulatorConfig(**scenario.simulator.model_dump())
         # Drake's start_time overwrites the Context's, which may already be at the hand-off.

@@ -5,8 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drake_formation.formation import graphs
-from drake_formation.scenario import Scenario, derive, to_yaml
+from drake_formation.scenario import Scenario, resolve, to_yaml
 from drake_formation.simulation.series import Series
 
 if TYPE_CHECKING:
@@ -54,19 +53,19 @@ def labelled_result(scenario: Scenario, series: Series) -> "xr.Dataset":
         for name, (dimensions, units, meaning) in VARIABLES.items()
     }
     variables["phase"] = variables["phase"].astype(np.int8)
-    springs = graphs.edges(derive.spring_graph(scenario))
+    formation = resolve(scenario)
     coordinates = {
         "time": ("time", series["time"], {"units": "s", "long_name": "time"}),
         "robot": np.arange(1, len(series["slot"]) + 1),
         "axis": ["x", "y"],
-        "spring": [f"{i + 1}-{j + 1}" for i, j in springs],
+        "spring": [f"{i + 1}-{j + 1}" for i, j in formation.springs.pairs.tolist()],
         "obstacle": np.arange(1, len(series["obstacle_radius"]) + 1),
     }
     attributes = {
         "title": scenario.name,
         "scenario": to_yaml(scenario),
         "sensing_range_m": scenario.avoidance.range,
-        "hand_off_time_s": derive.hand_off_time(scenario),
+        "hand_off_time_s": formation.hand_off,
         "drake_formation_version": version("drake-formation"),
         "drake_version": version("drake"),
     }

@@ -7,8 +7,9 @@ import numpy as np
 from pydrake.systems.framework import Context
 
 from drake_formation.diagram import build_diagram
-from drake_formation.parameters import Parameters, block_parameters, structure, write_parameters
-from drake_formation.scenario import Scenario, derive, require_sound
+from drake_formation.formation.formation import Formation
+from drake_formation.parameters import block_parameters, structure, write_parameters, write_start
+from drake_formation.scenario import Scenario, resolve
 from drake_formation.simulation.engines import ENGINES, Engine
 from drake_formation.simulation.recorder import NonFiniteStateError, Recording
 from drake_formation.simulation.result import labelled_result
@@ -78,7 +79,7 @@ class PreparedRun:
         if engine not in ENGINES:
             raise ValueError(f"no engine {engine!r}; there are {', '.join(ENGINES)}")
         self.diagram = build_diagram(scenario)
-        self.structure = structure(scenario)
+        self.structure = structure(resolve(scenario))
         self._start = ENGINES[engine](self.diagram)
         self._context = self.diagram.CreateDefaultContext()
 
@@ -96,18 +97,15 @@ class PreparedRun:
             ScenarioError, SimulationError: as for :func:`simulate`.
             ValueError: its structure differs.
         """
-        require_sound(scenario)
-        parameters = block_parameters(scenario)
-        if structure(scenario, parameters) != self.structure:
+        if structure(resolve(scenario)) != self.structure:
             raise ValueError(f"scenario {scenario.name!r} has another structure than the diagram made ready")
-        return self.run_known(scenario, parameters, progress=progress)
+        return self.run_known(scenario, progress=progress)
 
-    def run_known(self, scenario: Scenario, parameters: Parameters, *, progress: Progress | None = None) -> Series:
-        """Run a sound scenario that is known to have the structure, and whose numbers are known.
+    def run_known(self, scenario: Scenario, *, progress: Progress | None = None) -> Series:
+        """Run a scenario that is known to have the structure.
 
         Args:
             scenario: what to run.
-            parameters: its numbers, as :func:`drake_formation.parameters.block_parameters` gives them.
             progress: called as the simulated time goes on.
 
         Returns:
@@ -116,8 +114,9 @@ class PreparedRun:
         Raises:
             ScenarioError, SimulationError: as for :func:`simulate`.
         """
-        begin, hand_off, end = scenario.simulator.start_time, derive.hand_off_time(scenario), derive.end_time(scenario)
-        context = self._initial_context(scenario, parameters)
+        formation = resolve(scenario)
+        begin, hand_off, end = formation.begin, formation.hand_off, formation.end
+        context = self._initial_context(formation)
         run = self._start(scenario, context, progress and (lambda time: progress(time - begin)))
         try:
             run.advance(hand_off)
@@ -130,7 +129,7 @@ class PreparedRun:
         if at_hand_off is None:
             return time_series(scenario, run.recording, run.recording)
 
-        write_parameters(self.diagram, at_hand_off, block_parameters(without_obstacles(scenario)))
+        write_parameters(self.diagram, at_hand_off, block_parameters(resolve(without_obstacles(scenario))))
         nominal = self._start(
             scenario, at_hand_off, progress and (lambda time: progress(end - begin + time - hand_off))
         )
@@ -142,13 +141,12 @@ class PreparedRun:
         _require_clear(scenario, series)
         return series
 
-    def _initial_context(self, scenario: Scenario, parameters: Parameters) -> Context:
+    def _initial_context(self, formation: Formation) -> Context:
         context = self._context  # one for all runs, as making one takes as long as some runs
         context.SetTime(0.0)
         self.diagram.SetDefaultContext(context)
-        write_parameters(self.diagram, context, parameters)
-        starts = derive.starts(scenario)
-        context.SetContinuousState(np.hstack([starts, np.zeros_like(starts)]).ravel())
+        write_parameters(self.diagram, context, block_parameters(formation))
+        write_start(self.diagram, context, formation)
         return context
 
 

@@ -5,9 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from drake_formation.formation import graphs
-from drake_formation.parameters import obstacle_table
-from drake_formation.scenario import Scenario, derive
+from drake_formation.scenario import Scenario, resolve
 from drake_formation.simulation.recorder import Recording
 from drake_formation.systems.consensus_error import consensus_errors
 
@@ -32,10 +30,9 @@ def time_series(scenario: Scenario, run: Recording, nominal: Recording | None) -
     """
     state = run.series("state")
     position = state[..., :2]
-    slots = derive.slots(scenario)
-    springs = graphs.edges(derive.spring_graph(scenario))
-    obstacles = obstacle_table(scenario)
-    first, second = [i for i, _ in springs], [j for _, j in springs]
+    formation = resolve(scenario)
+    slots, obstacles = formation.slots, formation.obstacles
+    first, second = formation.springs.pairs.T
     forces = {name: run.series(name) for name in FORCES}
     with np.errstate(over="ignore"):  # a run that diverged may end in numbers whose squares overflow
         lengths = np.linalg.norm(position[:, first] - position[:, second], axis=-1)
@@ -46,16 +43,16 @@ def time_series(scenario: Scenario, run: Recording, nominal: Recording | None) -
         "position": position,
         "velocity": state[..., 2:],
         "tracking_error": run.series("tracking_error")[..., :2],
-        "deviation": _deviation(run, state, nominal, derive.hand_off_time(scenario)),
+        "deviation": _deviation(run, state, nominal, formation.hand_off),
         "consensus_error": consensus_errors(position, slots),
         **forces,
         "control_force": np.sum(list(forces.values()), axis=0),
         "spring_length": lengths,
-        "rest_length": np.linalg.norm(slots[first] - slots[second], axis=-1),
+        "rest_length": formation.rest_lengths,
         "clearance": clearance,
         "slot": slots,
-        "goal": np.array(scenario.transport.goal),
-        "aggregation_centre": derive.aggregation_centre(scenario),
+        "goal": formation.goal,
+        "aggregation_centre": formation.centre,
         "obstacle_position": obstacles[:, :2],
         "obstacle_radius": obstacles[:, 2],
     }

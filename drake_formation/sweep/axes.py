@@ -8,7 +8,7 @@ from zlib import crc32
 
 import numpy as np
 
-from drake_formation.scenario.errors import Fault, Path, shown
+from drake_formation.config.errors import Fault, Path, shown
 from drake_formation.sweep.schema import AxisModel, Distribution, GridAxis, ListAxis, RandomAxis, ZipAxis
 
 UNSET = object()

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from drake_formation.scenario.errors import Fault
+from drake_formation.config.errors import Fault
 from drake_formation.sweep.axes import UNSET, Axis, text
 from drake_formation.sweep.quantities import field_attributes, metric_names
 from drake_formation.sweep.schema import SERIES

@@ -5,9 +5,9 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from drake_formation.scenario.errors import MESSAGES, Fault, Path, ScenarioError, nearest, shown
+from drake_formation.config.errors import MESSAGES, Fault, Path, ScenarioError, nearest, shown
+from drake_formation.config.values import Section
 from drake_formation.scenario.source import Document
-from drake_formation.scenario.values import Section
 from drake_formation.sweep.schema import SECTIONS, SweepFile
 
 

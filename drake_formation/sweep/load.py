@@ -5,8 +5,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from drake_formation.config.errors import dotted, nearest, shown
 from drake_formation.scenario import Fault, ScenarioError, shipped_scenarios
-from drake_formation.scenario.errors import dotted, nearest, shown
 from drake_formation.scenario.load import find_file
 from drake_formation.scenario.overrides import apply, plain
 from drake_formation.scenario.source import Document, read

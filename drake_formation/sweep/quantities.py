@@ -9,6 +9,7 @@ from pydantic import BaseModel
 
 from drake_formation.metrics import Metrics
 from drake_formation.scenario import Scenario
+from drake_formation.scenario.written import PartOf
 
 LONG_NAMES = {
     "tracking_error_m": "largest tracking error",
@@ -57,7 +58,8 @@ def _description(annotation: Any, keys: list[str]) -> str:
     """The description of the innermost field that a path enters; empty if it leads nowhere."""
     for section in _sections(annotation):
         if keys and (field := section.model_fields.get(keys[0])):
-            return _description(field.annotation, keys[1:]) or field.description or ""
+            own = Annotated[field.annotation, *field.metadata] if field.metadata else field.annotation
+            return _description(own, keys[1:]) or field.description or ""
     if keys and keys[0].isdecimal():
         return next(filter(None, (_description(item, keys[1:]) for item in _items(annotation))), "")
     return ""
@@ -80,5 +82,6 @@ def _items(annotation: Any) -> list[Any]:
 def _branches(annotation: Any) -> tuple[Any, ...]:
     origin = get_origin(annotation)
     if origin is Annotated:
-        return get_args(annotation)[:1]
+        part = next((item for item in get_args(annotation)[1:] if isinstance(item, PartOf)), None)
+        return tuple(part.models().values()) if part else get_args(annotation)[:1]
     return get_args(annotation) if origin in (Union, types.UnionType) else ()

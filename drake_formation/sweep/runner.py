@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.metrics import measure
-from drake_formation.parameters import Parameters, block_parameters, structure
-from drake_formation.scenario import Scenario
+from drake_formation.parameters import structure
+from drake_formation.scenario import Scenario, resolve
 from drake_formation.simulation import PreparedRun
 from drake_formation.sweep.sampling import sample
 from drake_formation.sweep.schema import Trajectories
@@ -42,8 +42,7 @@ class Runner:
             SimulationError: the run diverged or the integrator gave up.
             ScenarioError, LoweringError: the engine cannot run this scenario.
         """
-        parameters = block_parameters(scenario)
-        series = self._ready(scenario, parameters).run_known(scenario, parameters)
+        series = self._ready(scenario).run_known(scenario)
         values = {
             name: np.array(np.nan if value is None else value, dtype=float)
             for name, value in measure(series).to_dict().items()
@@ -52,8 +51,8 @@ class Runner:
             values |= sample(series, self._trajectories.variables, self._trajectories.every)
         return values
 
-    def _ready(self, scenario: Scenario, parameters: Parameters) -> PreparedRun:
-        key = repr(structure(scenario, parameters))
+    def _ready(self, scenario: Scenario) -> PreparedRun:
+        key = repr(structure(resolve(scenario)))
         if key not in self._prepared:
             self.built += 1
             self._prepared[key] = PreparedRun(scenario, engine=self._engine)

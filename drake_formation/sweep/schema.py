@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from drake_formation.scenario.values import Positive, Section
+from drake_formation.config.values import Positive, Section
 from drake_formation.simulation.result import VARIABLES, VECTOR
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$")]

@@ -15,7 +15,8 @@ from drake_formation import load_scenario, simulate
 from drake_formation.analysis import linearize
 from drake_formation.analysis.distributed_lqr import distributed_lqr, relative_cost_of
 from drake_formation.analysis.errors import IllPosedError
-from drake_formation.scenario import derive, with_overrides
+from drake_formation.parts.tracking.lqr import cost_matrix
+from drake_formation.scenario import resolve, with_overrides
 
 CONNECTED = [g for g in nx.graph_atlas_g() if 2 <= g.number_of_nodes() <= 5 and nx.is_connected(g)]
 
@@ -31,11 +32,11 @@ def on_graph(graph, **changes):
 def whole_problem(formation, relative):
     """A, B, Q and R of all robots as one system, springs left out."""
     tracking = formation.scenario.tracking
-    robots, mass = formation.robots, derive.masses(formation.scenario)[0]
+    robots, mass = formation.robots, resolve(formation.scenario).masses[0]
     plant = np.kron(np.eye(robots), np.eye(4, k=2))
     force = np.kron(np.eye(robots), np.vstack([np.zeros((2, 2)), np.eye(2) / mass]))
-    state = np.kron(np.eye(robots), derive.cost_matrix(tracking.Q, 4)) + np.kron(formation.laplacian, relative)
-    return plant, force, state, np.kron(np.eye(robots), derive.cost_matrix(tracking.R, 2))
+    state = np.kron(np.eye(robots), cost_matrix(tracking.Q, 4)) + np.kron(formation.laplacian, relative)
+    return plant, force, state, np.kron(np.eye(robots), cost_matrix(tracking.R, 2))
 
 
 def whole_gain(formation, found):
@@ -122,7 +123,7 @@ def test_the_scenario_with_these_gains_moves_as_the_design():
     formation = linearize(load_scenario("quadrilateral", overrides={"consensus.graph": "path", "springs.stiffness": 0}))
     found = distributed_lqr(formation, relative_cost=[400.0, 400.0, 0.0, 0.0])
     displaced = np.array([[0.03, 0.0], [-0.01, 0.02], [0.0, -0.04], [0.02, 0.01]])
-    start = derive.slots(formation.scenario) + np.array(formation.scenario.transport.goal) + displaced
+    start = resolve(formation.scenario).slots + np.array(formation.scenario.transport.goal) + displaced
     gains = {"consensus.delta": found.delta, "consensus.delta_v": found.delta_v}
     changes = {"robots.start": start.tolist(), "transport.duration": 3.0, "simulator.accuracy": 1e-10, **gains}
     result = simulate(with_overrides(formation.scenario, changes))

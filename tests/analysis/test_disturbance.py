@@ -12,7 +12,7 @@ from drake_formation.analysis import linearize
 from drake_formation.analysis.disturbance import Disturbance, disturbance, force_to_error, noise_floor
 from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.norms import h2_norm, hinf_norm
-from drake_formation.scenario import derive
+from drake_formation.scenario import resolve
 
 QUICK = {"tracking.Q": 400.0, "robots.mass": 4.0, "springs.stiffness": 20.0}
 """Robots that forget within half a second, so that a short run has many independent samples."""
@@ -27,7 +27,7 @@ def blown(formation, blows, step):
     simulator.get_mutable_integrator().set_maximum_step_size(min(step, 0.2 / fastest))
     context = simulator.get_mutable_context()
     ports = [diagram.GetOutputPort(f"robot_{i + 1}_consensus_error") for i in range(formation.robots)]
-    masses = derive.masses(formation.scenario)[:, None]
+    masses = resolve(formation.scenario).masses[:, None]
     errors = []
     for k, blow in enumerate(blows):
         motion = context.get_continuous_state_vector().CopyToVector().reshape(-1, 4)

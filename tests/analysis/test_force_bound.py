@@ -13,7 +13,7 @@ from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.force_bound import energy, require_stable, supremum
 from drake_formation.analysis.force_map import force_map
 from drake_formation.analysis.peak_force import displacements
-from drake_formation.scenario import derive
+from drake_formation.scenario import resolve
 
 
 def worst(formation, radii, **options):
@@ -48,7 +48,7 @@ def test_no_motion_exceeds_the_bound_and_one_attains_the_value(scenario, rng):
 def test_the_energy_of_symmetric_loops_is_mechanical(scenario):
     formation = linearize(scenario)
     matrix = energy(formation, formation.A)
-    mass = np.repeat(derive.masses(scenario), 2)
+    mass = np.repeat(resolve(scenario).masses, 2)
     positions = np.arange(len(matrix)).reshape(-1, 4)[:, :2].ravel()
     rates = positions + 2
     stiffness = -mass[:, None] * formation.A[np.ix_(rates, positions)]

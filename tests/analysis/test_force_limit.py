@@ -12,7 +12,7 @@ from drake_formation.analysis import linearize
 from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.force_limit import largest_gain
 from drake_formation.analysis.peak_force import peak_force
-from drake_formation.scenario import derive, with_overrides
+from drake_formation.scenario import resolve, with_overrides
 
 ALONE = {"formation": {"shape": "slots", "slots": [[0, 0]]}, "robots.start": {"centre": [2.5, 3.5]}}
 
@@ -48,7 +48,7 @@ def test_the_diagram_stays_under_the_limit_and_comes_near(graph):
     formation = linearize(load_scenario("quadrilateral", overrides={"consensus.graph": graph}))
     found = largest_gain(formation, force_limit_n=1600.0, hand_off_error_m=0.04, travel_m=25.0)
     peak, scenario = found.peak, formation.scenario
-    start = derive.slots(scenario) + np.array(scenario.transport.goal) + peak.hand_off_errors + peak.travel
+    start = resolve(scenario).slots + np.array(scenario.transport.goal) + peak.hand_off_errors + peak.travel
     changes = {
         "robots.start": start.tolist(),
         "consensus.delta": found.delta,

@@ -9,7 +9,7 @@ from strategies import scenarios
 from drake_formation import build_diagram, load_scenario
 from drake_formation.analysis import linearize
 from drake_formation.analysis.force_map import force_map
-from drake_formation.scenario import derive
+from drake_formation.scenario import resolve
 
 
 @given(scenario=scenarios())
@@ -47,4 +47,4 @@ def test_springs_are_no_control():
     steel = load_scenario("quadrilateral", overrides={"springs.stiffness": 3e4})
     stiff, soft = (force_map(linearize(scenario)).tracking for scenario in (steel, load_scenario("quadrilateral")))
     np.testing.assert_allclose(stiff, soft, atol=1e-12)
-    assert derive.each(steel.springs.stiffness, 1)[0] == 3e4
+    assert resolve(steel).field("spring", "stiffness")[0] == 3e4

@@ -13,7 +13,7 @@ from drake_formation.analysis import linearize
 from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.force_map import AutoDiffFormation, force_map
 from drake_formation.analysis.hand_off_cost import HandOffCost
-from drake_formation.scenario import derive, with_overrides
+from drake_formation.scenario import resolve, with_overrides
 
 
 def test_two_robots_have_a_formula():
@@ -97,7 +97,7 @@ def test_the_mean_of_simulated_hand_offs():
     for robot, axis in np.ndindex(2, 2):
         displaced = np.zeros((2, 2))
         displaced[robot, axis] = size / np.sqrt(2)
-        start = derive.slots(formation.scenario) + np.array(formation.scenario.transport.goal) + displaced
+        start = resolve(formation.scenario).slots + np.array(formation.scenario.transport.goal) + displaced
         changes = {"robots.start": start.tolist(), "consensus.delta_v": 20.0, "simulator.accuracy": 1e-9}
         result = simulate(with_overrides(formation.scenario, changes), engine="compiled")
         errors.append(np.trapezoid((result.consensus_error**2).sum("axis").mean("robot"), result.time))

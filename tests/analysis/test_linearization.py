@@ -11,7 +11,7 @@ from strategies import scenarios
 from drake_formation import build_diagram, load_scenario
 from drake_formation.analysis import linearize
 from drake_formation.analysis.linearization import at_rest, own
-from drake_formation.scenario import derive
+from drake_formation.scenario import resolve
 
 
 @given(scenario=scenarios())
@@ -36,7 +36,7 @@ def test_consensus_and_springs_leave_a_translation_alone(scenario):
 
 def test_consensus_is_the_laplacian_over_the_masses():
     formation = linearize(load_scenario("quadrilateral", overrides={"robots.mass": [10.0, 20.0, 30.0, 40.0]}))
-    expected = -formation.laplacian / derive.masses(formation.scenario)[:, None]
+    expected = -formation.laplacian / resolve(formation.scenario).masses[:, None]
     onto_velocity = np.kron(expected, np.eye(2))
     rows = np.arange(16).reshape(4, 4)[:, 2:].ravel()
     positions = np.arange(16).reshape(4, 4)[:, :2].ravel()

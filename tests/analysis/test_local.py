@@ -10,14 +10,13 @@ from strategies import scenarios
 from drake_formation import build_diagram, load_scenario
 from drake_formation.analysis.linearization import linearize
 from drake_formation.analysis.local import local_loops
-from drake_formation.scenario import derive
-from drake_formation.systems.tracking import robot_matrices
+from drake_formation.parts.tracking.lqr import cost_matrix, robot_matrices
 
 
 @given(scenario=scenarios())
 @settings(max_examples=15)
 def test_theorem_1_holds_for_every_scenario(scenario):
-    q, r = derive.cost_matrix(scenario.tracking.Q, 4), derive.cost_matrix(scenario.tracking.R, 2)
+    q, r = cost_matrix(scenario.tracking.Q, 4), cost_matrix(scenario.tracking.R, 2)
     for loop in local_loops(linearize(scenario)):
         a, b = robot_matrices(loop.mass)
         np.testing.assert_allclose(loop.P, solve_continuous_are(a, b, q, r), rtol=1e-6)

@@ -14,7 +14,7 @@ from drake_formation.analysis import linearize
 from drake_formation.analysis.measures import ForceNoise
 from drake_formation.analysis.on_graph import interchangeable, on_complete_graph, on_graph, renumberings
 from drake_formation.formation import graphs
-from drake_formation.scenario import derive
+from drake_formation.scenario import resolve
 
 ALIKE = {"springs.law": "linear", "consensus.delta": 50.0, "consensus.delta_v": 5.0}
 
@@ -28,7 +28,7 @@ def complete_of(name, **overrides):
 @settings(max_examples=15)
 def test_picked_channels_are_the_diagram_linearized_anew(scenario):
     formation = linearize(scenario)
-    picked = on_graph(on_complete_graph(formation), derive.communication_graph(scenario))
+    picked = on_graph(on_complete_graph(formation), resolve(scenario).channels.graph)
     np.testing.assert_allclose(picked.A, formation.A, rtol=1e-9, atol=1e-9 * np.abs(formation.A).max())
     np.testing.assert_array_equal(picked.B, formation.B)
     np.testing.assert_array_equal(picked.laplacian, formation.laplacian)

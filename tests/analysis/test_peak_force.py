@@ -9,13 +9,13 @@ from drake_formation import load_scenario, simulate
 from drake_formation.analysis import linearize
 from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.peak_force import peak_force
-from drake_formation.scenario import derive, with_overrides
+from drake_formation.scenario import resolve, with_overrides
 
 
 def carried_out(formation, peak):
     """The diagram's forces (N) from the worst hand-off errors on, shape (time, robot), and their times."""
     scenario = formation.scenario
-    start = derive.slots(scenario) + np.array(scenario.transport.goal) + peak.hand_off_errors + peak.travel
+    start = resolve(scenario).slots + np.array(scenario.transport.goal) + peak.hand_off_errors + peak.travel
     changes = {
         "robots.start": start.tolist(),
         "transport.duration": 4.0,

@@ -11,7 +11,7 @@ from drake_formation import build_diagram, load_scenario, with_overrides
 from drake_formation.analysis.linearization import linearize
 from drake_formation.analysis.modes import modes
 from drake_formation.analysis.remedies import cause, remedies
-from drake_formation.scenario import derive
+from drake_formation.parts.tracking.lqr import cost_matrix
 
 
 def growth(scenario, seconds=8.0):
@@ -57,6 +57,6 @@ def test_a_remedy_reads_as_it_is_typed():
 @given(scenario=scenarios())
 @settings(max_examples=25)
 def test_diagonal_weights_are_stable_whatever_the_rest(scenario):
-    q, r = derive.cost_matrix(scenario.tracking.Q, 4), derive.cost_matrix(scenario.tracking.R, 2)
+    q, r = cost_matrix(scenario.tracking.Q, 4), cost_matrix(scenario.tracking.R, 2)
     weights = {"tracking.Q": np.diag(q).tolist(), "tracking.R": np.diag(r).tolist()}
     assert modes(linearize(with_overrides(scenario, weights))).stable

@@ -10,8 +10,7 @@ from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.linearization import linearize
 from drake_formation.analysis.rigidity import rigidity_matrix, spring_linearization, stiff_springs
 from drake_formation.analysis.shape import spring_stiffness
-from drake_formation.formation import graphs
-from drake_formation.scenario import derive
+from drake_formation.scenario import resolve
 
 
 def springs_of(name="quadrilateral", **overrides):
@@ -29,8 +28,8 @@ def test_drakes_stiffness_is_the_rigidity_matrix_weighted(scenario):
             spring_linearization(formation)
         return
     found = spring_linearization(formation)
-    slots, count = derive.slots(scenario), formation.robots
-    stiffness = derive.each(scenario.springs.stiffness, len(graphs.edges(derive.spring_graph(scenario))))
+    slots, count = resolve(scenario).slots, formation.robots
+    stiffness = resolve(scenario).field("spring", "stiffness")
     stiffness = stiffness[stiffness > 0]
     lengths = rigidity_matrix(slots, edges)
     incidence = np.array([np.eye(count)[i] - np.eye(count)[j] for i, j in edges])

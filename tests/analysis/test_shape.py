@@ -8,7 +8,7 @@ from drake_formation import load_scenario
 from drake_formation.analysis.linearization import linearize
 from drake_formation.analysis.rigidity import rigidity_matrix, stiff_springs
 from drake_formation.analysis.shape import parts, spring_damping, spring_stiffness
-from drake_formation.scenario import derive
+from drake_formation.scenario import resolve
 
 
 @given(scenario=scenarios())
@@ -35,7 +35,7 @@ def test_springs_resist_stretch_alone(scenario):
     if stretch.shape[1]:
         assert np.linalg.eigvalsh(stretch.T @ sum(matrices) @ stretch)[0] > 0
     if scenario.springs.law == "hookean":
-        rows = rigidity_matrix(derive.slots(scenario), stiff_springs(formation))
+        rows = rigidity_matrix(resolve(scenario).slots, stiff_springs(formation))
         assert len(rows) == 0 or stretch.shape[1] >= np.linalg.matrix_rank(rows, tol=1e-9)
 
 

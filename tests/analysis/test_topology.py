@@ -14,9 +14,8 @@ from drake_formation.analysis.disturbance import disturbance
 from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.on_graph import on_complete_graph, on_graph
 from drake_formation.analysis.topology import ForceNoise, HandOff, Pulse, Vibration, cheapest_graph, pareto_front
-from drake_formation.formation import graphs
 from drake_formation.paper.runs import TOPOLOGIES, topology
-from drake_formation.scenario import derive, with_overrides
+from drake_formation.scenario import resolve, with_overrides
 
 SQUARE = {"consensus.delta": 100.0, "springs.stiffness": 300.0}
 
@@ -164,7 +163,7 @@ def test_one_robot_talks_with_nobody():
 
 
 def spectrum(name):
-    return np.linalg.eigvalsh(graphs.laplacian(derive.communication_graph(topology(name))))
+    return np.linalg.eigvalsh(resolve(topology(name)).channels.laplacian)
 
 
 def test_spectra_of_the_paper():

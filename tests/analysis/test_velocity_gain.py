@@ -10,7 +10,7 @@ from drake_formation import load_scenario, simulate
 from drake_formation.analysis import linearize
 from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.velocity_gain import velocity_gain
-from drake_formation.scenario import derive, with_overrides
+from drake_formation.scenario import resolve, with_overrides
 
 UNEQUAL = {"robots.mass": [10.0, 20.0, 40.0, 80.0], "consensus.graph": "path", "springs.stiffness": 500.0}
 
@@ -62,7 +62,7 @@ def test_the_mode_is_the_one_of_the_algebraic_connectivity():
 def released(formation, delta_v, displaced, duration):
     """The diagram's motion from robots displaced from their slots (m) and at rest."""
     scenario = formation.scenario
-    start = derive.slots(scenario) + np.array(scenario.transport.goal) + displaced
+    start = resolve(scenario).slots + np.array(scenario.transport.goal) + displaced
     changes = {
         "robots.start": start.tolist(),
         "consensus.delta_v": delta_v,

@@ -4,17 +4,17 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from drake_formation.formation import graphs
-from drake_formation.scenario import derive
+from drake_formation.scenario import resolve
 
 
 def solve(scenario, times):
     """States at the given times of a scenario that starts at transport, shape (times, N, 4), to about 1e-9 m."""
-    slots, start = derive.slots(scenario), derive.starts(scenario)
+    slots, start = resolve(scenario).slots, resolve(scenario).starts
     count = len(slots)
-    springs = graphs.laplacian(derive.spring_graph(scenario)) < -0.5
-    talks = graphs.laplacian(derive.communication_graph(scenario))
+    springs = graphs.laplacian(resolve(scenario).springs.graph) < -0.5
+    talks = resolve(scenario).channels.laplacian
     rest = np.linalg.norm(slots[:, None] - slots, axis=-1)
-    goal, mass = np.array(scenario.transport.goal), derive.masses(scenario)[:, None]
+    goal, mass = np.array(scenario.transport.goal), resolve(scenario).masses[:, None]
     k, delta, avoidance = scenario.springs.stiffness, scenario.consensus.delta, scenario.avoidance
     centres = np.array([obstacle.position for obstacle in avoidance.obstacles])
 

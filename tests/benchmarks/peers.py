@@ -9,20 +9,20 @@ import numpy as np
 from numba import njit
 
 from drake_formation.parameters import block_parameters
-from drake_formation.scenario import derive
+from drake_formation.scenario import resolve
 
 NUMPY = {"error_model": "numpy"}
 
 
 def parameters(scenario):
     """Everything that the hand-written formation needs of a complete scenario in transport."""
-    count = derive.robot_count(scenario.formation)
-    numbers = block_parameters(scenario)
+    count = resolve(scenario).robots
+    numbers = block_parameters(resolve(scenario))
     obstacles = np.array([[*o.position, o.radius] for o in scenario.avoidance.obstacles]).reshape(-1, 3)
     tracking = numbers["robot_1/tracking"][0]
     return (
-        np.ascontiguousarray(derive.slots(scenario)),
-        np.array(derive.masses(scenario), dtype=float),
+        np.ascontiguousarray(resolve(scenario).slots),
+        np.array(resolve(scenario).masses, dtype=float),
         np.array(tracking, dtype=float).reshape(2, 4),
         np.array(scenario.transport.goal, dtype=float),
         np.full((count, count), float(scenario.springs.stiffness)),

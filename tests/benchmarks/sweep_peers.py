@@ -16,6 +16,7 @@ from formations import IN_FORMATION
 from drake_formation import build_diagram, load_scenario, with_overrides
 from drake_formation.lowering import lower
 from drake_formation.parameters import block_parameters, write_parameters
+from drake_formation.scenario import resolve
 from drake_formation.sweep import Processes
 
 SECONDS = np.arange(1.0, 61.0)
@@ -43,7 +44,7 @@ class Runs:
         )
         self.context.SetTime(0.0)
         self.diagram.SetDefaultContext(self.context)
-        write_parameters(self.diagram, self.context, block_parameters(scenario))
+        write_parameters(self.diagram, self.context, block_parameters(resolve(scenario)))
         pieces = self.compiled.integrate(self.context, 60.0, at=SECONDS, **options)
         return np.concatenate([piece.states for piece in pieces])
 

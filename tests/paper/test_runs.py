@@ -4,7 +4,7 @@ import pytest
 
 from drake_formation.formation import graphs
 from drake_formation.paper.runs import FORMATIONS, GAINS, MATERIALS, TOPOLOGIES, aggregation, topology, transports
-from drake_formation.scenario import derive
+from drake_formation.scenario import resolve
 
 
 @pytest.mark.parametrize("formation", FORMATIONS)
@@ -15,7 +15,7 @@ def test_each_formation_has_a_run_for_every_material_and_gain(formation):
 
 def test_topologies_are_connected_and_have_the_channels_they_are_named_after():
     for name in TOPOLOGIES:
-        graph = derive.communication_graph(topology(name))
+        graph = resolve(topology(name)).channels.graph
         assert graphs.channels(graph) == int(name.split()[0])
         assert graphs.algebraic_connectivity(graph) > 0
 

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from drake_formation.scenario.checks import check
 from drake_formation.scenario.load import load_scenario, shipped_scenarios
 from drake_formation.scenario.overrides import plain
+from drake_formation.scenario.resolve import check
 from drake_formation.scenario.schema import Scenario
 
 
@@ -116,7 +116,7 @@ def test_the_shipped_scenarios_are_sound(name):
         ),
         (
             {"robots__mass": [1, 2]},
-            "robots.mass: 2 masses for 3 robots (got [1.0, 2.0]); allowed: one mass (kg) for all, or 3, one a robot",
+            "robots.mass: 2 values for 3 robots (got [1.0, 2.0]); allowed: one for all, or 3, one a robot",
         ),
         (
             {"springs__stiffness": [1, 2]},

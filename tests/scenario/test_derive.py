@@ -4,7 +4,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from drake_formation.formation import graphs, shapes
+from drake_formation.formation import shapes
 from drake_formation.scenario import derive, load_scenario, with_overrides
 from drake_formation.scenario.schema import Grid, Polygon, RandomBox, RandomStart, Scenario, Slots
 
@@ -77,29 +77,3 @@ def test_the_published_aggregation_ends_at_the_published_finals():
 
 def test_the_goal_of_the_octagon_is_25_m_ahead():
     assert_allclose(OCTAGON.transport.goal - derive.aggregation_centre(OCTAGON), [25, 0], atol=1e-12)
-
-
-def test_users_number_robots_from_1():
-    scenario = with_overrides(OCTAGON, {"springs.graph": [[1, 8]], "consensus.graph": "star"})
-    assert graphs.edges(derive.spring_graph(scenario)) == [(0, 7)]
-    assert graphs.neighbours(derive.communication_graph(scenario), 0) == list(range(1, 8))
-
-
-def test_one_number_for_all_or_one_for_each():
-    assert_array_equal(derive.masses(LINE), [40, 40])
-    assert_array_equal(derive.masses(with_overrides(LINE, {"robots.mass": [30, 50]})), [30, 50])
-    assert_array_equal(derive.each(2.0, 3), [2, 2, 2])
-    with pytest.raises(ValueError, match="broadcast"):
-        derive.each([1.0, 2.0], 3)
-
-
-def test_a_cost_is_a_multiple_a_diagonal_or_a_matrix():
-    assert_array_equal(derive.cost_matrix(3.0, 2), 3 * np.eye(2))
-    assert_array_equal(derive.cost_matrix((1.0, 2.0), 2), np.diag([1, 2]))
-    assert_array_equal(derive.cost_matrix(((1.0, 0.5), (0.5, 1.0)), 2), [[1, 0.5], [0.5, 1]])
-
-
-def test_phases_follow_each_other():
-    later = with_overrides(LINE, {"simulator.start_time": 5.0})
-    assert (derive.hand_off_time(LINE), derive.end_time(LINE)) == (60.0, 120.0)
-    assert (derive.hand_off_time(later), derive.end_time(later)) == (65.0, 125.0)

@@ -1,17 +1,19 @@
+from typing import Annotated, Any
+
 import pytest
 
+from drake_formation.config.values import CostMatrix, Graph, Positive
 from drake_formation.scenario.fields import chooser, locate, names, phrase
 from drake_formation.scenario.schema import (
-    CostMatrix,
-    Graph,
     Line,
-    Positive,
     RandomStart,
-    Reference,
     Scenario,
     Shape,
     Slots,
 )
+from drake_formation.scenario.written import PartOf
+
+Reference = Annotated[Any, PartOf("reference")]
 
 
 @pytest.mark.parametrize(
@@ -19,12 +21,13 @@ from drake_formation.scenario.schema import (
     [
         (("formation", "line", "side"), ("formation", "side")),
         (("formation", "slots", "slots", 1, 0), ("formation", "slots", 1, 0)),
-        (("robots", "start", "random", "random", "seed"), ("robots", "start", "random", "seed")),
-        (("robots", "start", "positions", 0), ("robots", "start", 0)),
-        (("robots", "mass", "list", 1), ("robots", "mass", 1)),
-        (("tracking", "Q", "matrix", 1, 2), ("tracking", "Q", 1, 2)),
-        (("consensus", "graph", "named"), ("consensus", "graph")),
-        (("springs", "graph", "edges", 0, 1), ("springs", "graph", 0, 1)),
+        (("robots", "point_mass", "start", "random", "random", "seed"), ("robots", "start", "random", "seed")),
+        (("robots", "point_mass", "start", "positions", 0), ("robots", "start", 0)),
+        (("robots", "point_mass", "mass", "list", 1), ("robots", "mass", 1)),
+        (("robots", "point_mass", "mass", "mapping", "2"), ("robots", "mass", "2")),
+        (("tracking", "lqr", "Q", "scalar", "matrix", 1, 2), ("tracking", "Q", 1, 2)),
+        (("consensus", "consensus", "graph", "named"), ("consensus", "graph")),
+        (("springs", "hookean", "graph", "edges", 0, 1), ("springs", "graph", 0, 1)),
         (("transport", "reference", "waypoints", "points", 1, 0), ("transport", "reference", "points", 1, 0)),
         (("transport", "reference", "potential_field", "known", "listed", 1), ("transport", "reference", "known", 1)),
     ],
@@ -41,7 +44,10 @@ def test_a_place_knows_its_section_and_its_field():
 
 
 def test_a_union_is_described_as_a_whole():
-    assert locate(("consensus", "graph", "named")).annotation == locate(("consensus", "graph")).annotation
+    assert (
+        locate(("consensus", "consensus", "graph", "named")).annotation
+        == locate(("consensus", "consensus", "graph")).annotation
+    )
 
 
 def test_an_unknown_key_has_a_section_but_no_annotation():
@@ -62,7 +68,7 @@ def test_names_are_those_a_value_may_choose_from():
     assert names(Graph) == ["complete", "cycle", "path", "star"]
     assert names(Scenario.model_fields["formation"].annotation) == ["line", "polygon", "grid", "slots"]
     assert names(Positive) == []
-    assert names(Reference) == ["set_point", "minimum_jerk", "waypoints", "potential_field"]
+    assert names(Reference) == ["set_point", "minimum_jerk", "potential_field", "waypoints"]
 
 
 def test_a_key_chooses_between_sections():

@@ -10,7 +10,7 @@ from drake_formation.scenario import (
     Scenario,
     ScenarioError,
     load_scenario,
-    require_sound,
+    resolve,
     shipped_scenarios,
     with_overrides,
 )
@@ -126,10 +126,10 @@ def test_a_variant_may_take_another_shape():
 
 def test_scenarios_built_in_python_are_checked_on_demand():
     line = load_scenario("line")
-    require_sound(line)
+    resolve(line)
     broken = line.model_copy(update={"tracking": line.tracking.model_copy(update={"Q": 0.0})})
     with pytest.raises(ScenarioError, match=r"^scenario 'line': tracking\.Q: a position costs nothing"):
-        require_sound(broken)
+        resolve(broken)
 
 
 def faults_of(text, overrides=None):

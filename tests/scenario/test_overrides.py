@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from drake_formation.scenario.errors import ScenarioError
+from drake_formation.config.errors import ScenarioError
 from drake_formation.scenario.overrides import apply
 from drake_formation.scenario.schema import Line, Polygon
 from drake_formation.scenario.source import parse

@@ -6,8 +6,13 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 from pydrake.systems.analysis import SimulatorConfig
 
+from drake_formation.parts import ROLES
+from drake_formation.parts.coordination.consensus import Consensus
+from drake_formation.parts.robots.point_mass import PointMass
+from drake_formation.parts.springs.hookean import SpringNumbers
+from drake_formation.parts.tracking.lqr import Lqr
 from drake_formation.scenario import schema
-from drake_formation.scenario.schema import Consensus, Line, Polygon, Robots, Scenario, Simulation, Springs, Tracking
+from drake_formation.scenario.schema import Line, Polygon, Robots, Scenario, Simulation
 
 
 def sections():
@@ -27,7 +32,12 @@ def test_sections_are_strict_frozen_and_finite(section):
 
 @pytest.mark.parametrize(
     ("section", "field"),
-    [(Springs, "stiffness"), (Springs, "damping"), (Consensus, "delta"), (Consensus, "delta_v")],
+    [
+        (SpringNumbers, "stiffness"),
+        (SpringNumbers, "damping"),
+        (Consensus.Config, "delta"),
+        (Consensus.Config, "delta_v"),
+    ],
 )
 @given(value=st.floats(max_value=0, exclude_max=True) | st.just(math.nan) | st.just(math.inf))
 def test_gains_are_finite_and_not_negative(section, field, value):
@@ -38,7 +48,7 @@ def test_gains_are_finite_and_not_negative(section, field, value):
 @pytest.mark.parametrize("value", ["1.0", True, None, [True], ["1"]])
 def test_numbers_are_not_guessed(value):
     with pytest.raises(ValidationError):
-        Springs(stiffness=value)
+        SpringNumbers(stiffness=value)
 
 
 def test_whole_numbers_are_not_rounded():
@@ -56,7 +66,7 @@ def test_starts_of_every_kind(start):
 
 @pytest.mark.parametrize("cost", [1, (1, 1, 1, 1), ((1, 0), (0, 1))])
 def test_costs_of_every_kind(cost):
-    tracking = Tracking(Q=cost)
+    tracking = Lqr.Config(Q=cost)
     assert cost == tracking.Q
 
 
@@ -66,8 +76,9 @@ def test_no_point_lies_where_rounding_counts():
 
 
 def test_defaults_are_the_published_values():
-    assert (Robots(start=[(0, 0)]).mass, Springs().stiffness, Springs().law) == (40.0, 1.45, "hookean")
-    assert (Tracking().Q, Tracking().R, Consensus().delta, Consensus().delta_v) == (1.0, 1.0, 0.0, 0.0)
+    assert (PointMass.Config().mass, SpringNumbers().stiffness, ROLES["spring"].default) == (40.0, 1.45, "hookean")
+    gains = Consensus.Config()
+    assert (Lqr.Config().Q, Lqr.Config().R, gains.delta, gains.delta_v) == (1.0, 1.0, 0.0, 0.0)
 
 
 def test_simulator_fields_are_drakes():

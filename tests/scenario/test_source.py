@@ -2,7 +2,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drake_formation.scenario.errors import ScenarioError
+from drake_formation.config.errors import ScenarioError
 from drake_formation.scenario.source import parse, read
 
 

@@ -1,6 +1,6 @@
 import pytest
 
-from drake_formation.scenario.errors import ScenarioError
+from drake_formation.config.errors import ScenarioError
 from drake_formation.scenario.source import parse
 from drake_formation.scenario.validate import validate
 
@@ -76,7 +76,7 @@ def test_a_scenario_needs_no_more_than_this():
             "",
             "",
             "springs:\n",
-            "f.yaml:10: springs: not allowed (got null); allowed: a mapping {graph, law, stiffness, damping}",
+            "f.yaml:10: springs: not allowed (got null); allowed: a mapping {law, graph, stiffness, damping}",
         ),
         (
             "",

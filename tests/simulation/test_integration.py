@@ -16,11 +16,10 @@ from pydrake.systems.framework import LeafSystem
 from drake_formation.diagram import build_diagram
 from drake_formation.formation import graphs
 from drake_formation.parameters import block_parameters, robot_name
-from drake_formation.scenario import derive, load_scenario
-from drake_formation.systems.avoidance import avoidance_force
-from drake_formation.systems.consensus import consensus_force
-from drake_formation.systems.plant import SPRING_LAWS
-from drake_formation.systems.tracking import tracking_force
+from drake_formation.parts.avoidance.khatib import avoidance_force
+from drake_formation.parts.coordination.consensus import consensus_force
+from drake_formation.parts.tracking.lqr import tracking_force
+from drake_formation.scenario import load_scenario, resolve
 
 DURATION = 5.0
 
@@ -31,10 +30,11 @@ class Monolith(LeafSystem):
     def __init__(self, scenario):
         super().__init__()
         self.scenario = scenario
-        self.parameters = block_parameters(scenario)
-        self.robots = derive.robot_count(scenario.formation)
-        self.held = [graphs.neighbours(derive.spring_graph(scenario), i) for i in range(self.robots)]
-        self.heard = [graphs.neighbours(derive.communication_graph(scenario), i) for i in range(self.robots)]
+        self.law = resolve(scenario).law.law
+        self.parameters = block_parameters(resolve(scenario))
+        self.robots = resolve(scenario).robots
+        self.held = [graphs.neighbours(resolve(scenario).springs.graph, i) for i in range(self.robots)]
+        self.heard = [graphs.neighbours(resolve(scenario).channels.graph, i) for i in range(self.robots)]
         self.DeclareContinuousState(2 * self.robots, 2 * self.robots, 0)
 
     def DoCalcTimeDerivatives(self, context, derivatives):  # noqa: N802 - Drake's name
@@ -47,12 +47,12 @@ class Monolith(LeafSystem):
         return self.parameters[f"{robot_name(robot)}/{block}"]
 
     def force(self, i, states):
-        gain, slot, *_ = self.numbers(i, "tracking")
+        gain, _, slot = self.numbers(i, "tracking")
         error = np.array(states[i]) - [*(np.array(self.scenario.transport.goal) + slot), 0, 0]
         force = np.array(tracking_force(tuple(error.tolist()), np.ravel(gain).tolist()))
         _, springs = self.numbers(i, "plant")
         for j, numbers in zip(self.held[i], springs, strict=True):
-            force -= SPRING_LAWS[self.scenario.springs.law](*np.subtract(states[i], states[j]), *numbers)
+            force -= self.law(*np.subtract(states[i], states[j]), *numbers)
         gains, displacements = self.numbers(i, "consensus")
         for j, displacement in zip(self.heard[i], displacements, strict=True):
             force += consensus_force(*np.subtract(states[i], states[j]), *gains, *displacement)
@@ -82,7 +82,7 @@ def scenario(request):
 def start(scenario):
     """Robots at rest, a few centimetres off their slots, shape (4, 4)."""
     off = [[0.02, 0.0], [0.0, 0.0], [0.0, 0.03], [0.0, 0.0]]
-    positions = [1.6875, 3.5125] + derive.slots(scenario) * [1.05, 0.98] + off
+    positions = [1.6875, 3.5125] + resolve(scenario).slots * [1.05, 0.98] + off
     return np.hstack([positions, np.zeros((4, 2))])
 
 

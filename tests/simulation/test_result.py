@@ -4,7 +4,7 @@ import xarray as xr
 from probe import context_at
 
 from drake_formation import build_diagram, load_scenario, simulate
-from drake_formation.scenario import derive, with_overrides
+from drake_formation.scenario import resolve, with_overrides
 
 UNITS = {
     "position": "m",
@@ -73,7 +73,7 @@ def test_time_increases_strictly_from_the_beginning_to_the_end(result):
 
 
 def test_the_hand_off_is_a_sample_and_the_first_of_the_transport(result, scenario):
-    assert result.attrs["hand_off_time_s"] == derive.hand_off_time(scenario) == 5.0
+    assert result.attrs["hand_off_time_s"] == resolve(scenario).hand_off == 5.0
     transport = result["time"].values[result["phase"].values == 1]
     assert transport[0] == 5.0
     assert (result["phase"].values == (result["time"].values >= 5.0)).all()
@@ -89,7 +89,7 @@ def test_every_sample_shows_what_the_diagrams_ports_show_in_its_state(result, sc
     diagram = build_diagram(with_overrides(scenario, {"aggregation.duration": 0.0}))
     transport = result.isel(time=result["phase"].values == 1)
     centre = result["aggregation_centre"].values
-    assert np.allclose(centre, derive.aggregation_centre(scenario))
+    assert np.allclose(centre, resolve(scenario).centre)
     for index in range(0, transport.sizes["time"], 5):
         sample = transport.isel(time=index)
         context = context_at(diagram, np.hstack([sample["position"], sample["velocity"]]))

@@ -7,23 +7,28 @@ import pytest
 from pydrake.autodiffutils import AutoDiffXd, ExtractGradient, ExtractValue
 from pydrake.symbolic import Evaluate, Expression, Variable
 
-from drake_formation.references.set_point import SetPoint
-from drake_formation.systems.avoidance import ObstacleAvoidance
-from drake_formation.systems.consensus import ConsensusController
+from drake_formation.parts.avoidance.khatib import ObstacleAvoidance
+from drake_formation.parts.coordination.consensus import ConsensusController
+from drake_formation.parts.references.set_point import SetPoint
+from drake_formation.parts.robots.point_mass import RobotPlant
+from drake_formation.parts.springs.hookean import Hookean
+from drake_formation.parts.springs.linear import Linear
+from drake_formation.parts.tracking.controller import TrackingController
+from drake_formation.parts.tracking.lqr import lqr_force
 from drake_formation.systems.consensus_error import ConsensusError
 from drake_formation.systems.hand_off import HandOff
-from drake_formation.systems.plant import RobotPlant
 from drake_formation.systems.sensing import NearestSensing
-from drake_formation.systems.tracking import TrackingController
 
 SPRINGS = [[10.0, 2.0, 0.5, -1.0], [20.0, 3.0, 1.0, 1.0]]
 OBSTACLES = [[0.5, 0.5, 0.0], [-1.0, 0.5, 0.2], [40.0, 0.0, 0.0]]
 
 MAKERS = {
-    "hookean plant": lambda: RobotPlant([2, 3], "hookean", [40.0], SPRINGS, [1.0, 2.0, 3.0, 4.0]),
-    "linear plant": lambda: RobotPlant([2, 3], "linear", [40.0], SPRINGS, [1.0, 2.0, 3.0, 4.0]),
-    "plant without springs": lambda: RobotPlant([], "hookean", [40.0], np.zeros((0, 4)), [1.0, 2.0, 3.0, 4.0]),
-    "tracking": lambda: TrackingController([[1.0, 0.1, 9.0, 0.2], [0.3, 1.0, 0.4, 9.0]], [0.5, -0.5]),
+    "hookean plant": lambda: RobotPlant([2, 3], Hookean, [40.0], SPRINGS, [1.0, 2.0, 3.0, 4.0]),
+    "linear plant": lambda: RobotPlant([2, 3], Linear, [40.0], SPRINGS, [1.0, 2.0, 3.0, 4.0]),
+    "plant without springs": lambda: RobotPlant([], Hookean, [40.0], np.zeros((0, 4)), [1.0, 2.0, 3.0, 4.0]),
+    "tracking": lambda: TrackingController(
+        lqr_force, [[[1.0, 0.1, 9.0, 0.2], [0.3, 1.0, 0.4, 9.0]], [0.0]], [0.5, -0.5]
+    ),
     "consensus": lambda: ConsensusController([2, 5], [100.0, 7.0], [[1.0, 0.0], [0.0, -1.0]]),
     "consensus without channels": lambda: ConsensusController([], [100.0, 7.0], np.zeros((0, 2))),
     "avoidance": lambda: ObstacleAvoidance([2.0, 30.0], OBSTACLES),

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from drake_formation.config.errors import Fault, Path, shown
 from drake_formation.scenario import derive
-from drake_formation.scenario.errors import Fault, Path, shown
 from drake_formation.scenario.schema import MOST_ROBOTS, FormationStart, Grid, Polygon, Scenario, Slots
 
 _SAME_PLACE = 1e-9

@@ -1,61 +1,78 @@
 """Who is coupled to whom, and what is given for each robot or edge."""
 
 from collections.abc import Iterator
+from typing import Any
 
-import networkx as nx
-
+from drake_formation.config.errors import Fault, Path, shortened, shown
 from drake_formation.formation.graphs import Edge, edges
+from drake_formation.parts.registry import find
 from drake_formation.scenario import derive
-from drake_formation.scenario.errors import Fault, Path, shortened, shown
 from drake_formation.scenario.schema import Scenario
 
 
 def check(scenario: Scenario) -> Iterator[Fault]:
-    """Everything about graphs and the lists that go with them."""
-    yield from _masses(scenario)
+    """Whether graphs join robots that there are, each two once."""
     yield from _springs(scenario)
-    yield from _consensus(scenario)
-
-
-def _masses(scenario: Scenario) -> Iterator[Fault]:
-    mass, count = scenario.robots.mass, derive.robot_count(scenario.formation)
-    if isinstance(mass, tuple) and len(mass) != count:
-        message = f"{len(mass)} masses for {count} robots"
-        yield Fault(("robots", "mass"), message, shown(mass), f"one mass (kg) for all, or {count}, one a robot")
+    yield from _channels(scenario)
 
 
 def _springs(scenario: Scenario) -> Iterator[Fault]:
     springs = scenario.springs
     faults = list(_edges(("springs", "graph"), springs.graph, derive.robot_count(scenario.formation)))
     yield from faults
-    given = {"stiffness": springs.stiffness, "damping": springs.damping}
-    lists = {key: values for key, values in given.items() if isinstance(values, tuple)}
-    if faults or not lists:
+    fields = find("spring", springs.law).Config.model_fields
+    lists = [name for name in fields if isinstance(getattr(springs, name), tuple)]
+    if faults or not lists or isinstance(springs.graph, str):
         return
     order = edges(derive.spring_graph(scenario))
-    if not isinstance(springs.graph, str) and [_sorted(edge) for edge in springs.graph] != [_named(e) for e in order]:
+    if [_sorted(edge) for edge in springs.graph] != [_named(e) for e in order]:
         # Values are given in ascending order of the edges: an own order of edges would silently mix them up.
         message = f"edges out of order for the values of {' and '.join(lists)}"
         yield Fault(("springs", "graph"), message, shown(springs.graph), f"ascending: {_listed(order)}")
-    for key, values in lists.items():
-        if len(values) != len(order):
-            message = f"{len(values)} values for {len(order)} edges"
-            allowed = f"one for all, or {len(order)} in the order of the edges: {_listed(order)}"
-            yield Fault(("springs", key), message, shown(values), allowed)
 
 
-def _consensus(scenario: Scenario) -> Iterator[Fault]:
-    consensus, path = scenario.consensus, ("consensus", "graph")
-    faults = list(_edges(path, consensus.graph, derive.robot_count(scenario.formation)))
-    yield from faults
-    if faults or (consensus.delta == 0 and consensus.delta_v == 0):
+def _channels(scenario: Scenario) -> Iterator[Fault]:
+    graph, path = scenario.consensus.graph, ("consensus", "graph")
+    count = derive.robot_count(scenario.formation)
+    if isinstance(graph, str):
         return
-    groups = list(nx.connected_components(derive.communication_graph(scenario)))
-    if len(groups) > 1:
-        named = " and ".join("{" + ", ".join(str(robot + 1) for robot in sorted(group)) + "}" for group in groups)
-        message = f"no channel between robots {shortened(named)}, so they reach no consensus (Lemma 1)"
-        allowed = "a connected graph while delta or delta_v is above 0"
-        yield Fault(path, message, shown(consensus.graph), allowed)
+    seen: dict[Edge, int] = {}
+    for index, link in enumerate(graph):
+        here = (*path, index)
+        ways = (link, link[::-1]) if isinstance(link, tuple) else ((link.listener, link.speaker),)
+        if fault := _ends(here, ways[0], count, link):
+            yield fault
+            continue
+        if twice := next((way for way in ways if way in seen), None):
+            yield _twice(here, link, graph[seen[twice]], seen[twice], twice)
+        seen.update(dict.fromkeys(ways, index))
+
+
+def _twice(path: Path, link: Any, other: Any, entry: int, way: Edge) -> Fault:
+    if isinstance(link, tuple) and isinstance(other, tuple):
+        message, allowed = f"the same edge as entry {entry}", "every edge once; edges have no direction"
+    else:
+        listener, speaker = way
+        message = f"a second channel from robot {speaker} to robot {listener}, after entry {entry}"
+        allowed = "one channel an edge and direction; [i, j] is one each way"
+    return Fault(path, message, shown(_plain(link)), allowed)
+
+
+def _plain(link: Any) -> Any:
+    return link if isinstance(link, tuple) else link.model_dump()
+
+
+def _ends(path: Path, ends: Edge, count: int, link: Any) -> Fault | None:
+    outside = [str(robot) for robot in _ordered(link) if not 1 <= robot <= count]
+    if outside:
+        return Fault(path, f"there is no robot {outside[0]}", shown(_plain(link)), f"two of the robots 1 to {count}")
+    if ends[0] == ends[1]:
+        return Fault(path, "an edge from a robot to itself", shown(_plain(link)), f"two of the robots 1 to {count}")
+    return None
+
+
+def _ordered(link: Any) -> Edge:
+    return link if isinstance(link, tuple) else (link.speaker, link.listener)
 
 
 def _edges(path: Path, graph: str | tuple[Edge, ...], count: int) -> Iterator[Fault]:

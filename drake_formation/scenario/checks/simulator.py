@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from functools import cache
 
-from drake_formation.scenario.errors import Fault, nearest, shown
+from drake_formation.config.errors import Fault, nearest, shown
 from drake_formation.scenario.schema import Scenario
 
 

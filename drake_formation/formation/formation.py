@@ -1,0 +1,110 @@
+"""What a scenario means, as plain arrays: computed once, and read by everything that comes after."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drake_formation.formation.links import Channels, Edges
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Formation:
+    """A scenario resolved; :func:`drake_formation.scenario.resolve` makes it. Arrays cannot be written to.
+
+    Robots are numbered from 0 here. Positions are in the world frame, slots relative to the formation centre.
+
+    Attributes:
+        name: of the scenario.
+        slots: h_i (m), shape (N, 2).
+        starts: where the robots start, at rest (m), shape (N, 2).
+        centre: where the formation gathers, the mean of the starts (m), shape (2,).
+        goal: where the formation centre is carried to (m), shape (2,).
+        springs: which robots the object couples, E edges.
+        channels: which robots hear which, C channels with weights.
+        obstacles: x, y and radius of each (m), shape (M, 3).
+        begin: when the scenario begins (s).
+        aggregation_duration: how long the robots gather before the hand-off (s).
+        transport_duration: how long they carry after it (s).
+        law: the part by whose law the object's springs act.
+        parts: the parts of every role: one a robot, one an edge for ``spring``, one a channel for ``channel``, and one
+            in all for ``reference``.
+    """
+
+    name: str
+    slots: Array
+    starts: Array
+    centre: Array
+    goal: Array
+    springs: Edges
+    channels: Channels
+    obstacles: Array
+    begin: float
+    aggregation_duration: float
+    transport_duration: float
+    law: type[Any]
+    parts: Mapping[str, tuple[Any, ...]]
+
+    def __post_init__(self) -> None:
+        for array in (self.slots, self.starts, self.centre, self.goal, self.obstacles):
+            array.setflags(write=False)
+
+    @cached_property
+    def kept(self) -> dict[str, Any]:
+        """What others worked out from this formation and keep with it."""
+        return {}
+
+    @property
+    def robots(self) -> int:
+        """Number of robots N."""
+        return len(self.slots)
+
+    @property
+    def hand_off(self) -> float:
+        """When the object is placed on the robots (s)."""
+        return self.begin + self.aggregation_duration
+
+    @property
+    def end(self) -> float:
+        """When the scenario ends (s)."""
+        return self.hand_off + self.transport_duration
+
+    @cached_property
+    def radius(self) -> float:
+        """Radius of the circle about the formation centre that holds every slot (m)."""
+        return float(np.linalg.norm(self.slots, axis=1).max())
+
+    @cached_property
+    def masses(self) -> Array:
+        """Mass of every robot m_i (kg), shape (N,)."""
+        return np.array([part.config.mass for part in self.parts["robot"]])
+
+    @cached_property
+    def rest_lengths(self) -> Array:
+        """r_ij = ‖h_i − h_j‖ of every edge of the object (m), shape (E,)."""
+        return self.springs.lengths(self.slots)
+
+    def displacements(self, robot: int, others: tuple[int, ...]) -> Array:
+        """Desired displacement h_i − h_j of a robot from some others (m), shape (others, 2)."""
+        result: Array = self.slots[robot] - self.slots[list(others)]
+        return result
+
+    def field(self, role: str, name: str) -> Array:
+        """A number of the parts of a role, one for each, such as the stiffness (N/m) of every edge."""
+        return np.array([getattr(part.config, name) for part in self.parts[role]], dtype=float)
+
+    def faults_of_parts(self, roles: tuple[str, ...]) -> Iterator[tuple[str, int, Any]]:
+        """What is wrong with the parts of some roles: role, owner and fault."""
+        for role in roles:
+            for owner, part in enumerate(self.parts[role]):
+                for fault in part.checks(self, owner):
+                    yield role, owner, fault
+
+    def changed(self, **changes: Any) -> "Formation":
+        """The formation with some attributes replaced."""
+        return replace(self, **changes)

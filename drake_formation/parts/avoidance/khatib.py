@@ -1,0 +1,126 @@
+"""Local collision avoidance of one robot: Khatib's artificial potential field."""
+
+from collections.abc import Hashable
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pydantic import Field
+from pydrake.systems.framework import BasicVector_, LeafSystem_
+
+from drake_formation.config.values import Length, NonNegative, Section
+from drake_formation.formation.formation import Formation
+from drake_formation.parts.part import Numbers, Part
+from drake_formation.parts.registry import part
+from drake_formation.systems.scalars import Scalar, positive_part
+from drake_formation.systems.templates import block_template, in_double
+
+
+def avoidance_force(
+    dx: Scalar, dy: Scalar, radius: Scalar, sensing_range: Scalar, gain: Scalar
+) -> tuple[Scalar, Scalar]:
+    """Repulsive force of one obstacle (Khatib 1986; the paper names an artificial potential function only).
+
+    η (1/ρ − 1/ρ0)/ρ² along ∇ρ for a clearance ρ < ρ0, else zero.
+
+    Args:
+        dx: position of the robot relative to the obstacle's centre (m), x component.
+        dy: its y component (m).
+        radius: radius of the obstacle (m); 0 is a point.
+        sensing_range: ρ0 (m).
+        gain: η (N m²).
+
+    Returns:
+        Components of the force on the robot (N).
+    """
+    distance = (dx * dx + dy * dy) ** 0.5
+    clearance = distance - radius
+    push = gain * positive_part(1.0 / clearance - 1.0 / sensing_range) / (clearance * clearance * distance)
+    return push * dx, push * dy
+
+
+@block_template("ObstacleAvoidance_", __name__)
+def ObstacleAvoidance_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
+    """The controller as a template over double, AutoDiffXd and Expression; see :class:`ObstacleAvoidance`."""
+
+    class Impl(LeafSystem_[T]):  # type: ignore[misc]
+        """The avoidance control of one robot: the sum of what its sensed obstacles exert during transport.
+
+        Input ports: ``state`` (size 4), ``phase`` (0 aggregation, 1 transport: obstacles are felt) and, with masked
+        sensing, ``sensed`` (1 for each obstacle this robot is allowed to see, else 0). Output port: ``force`` (N,
+        size 2). Parameters: 0, [ρ0, η] (m, N m²); 1, for each obstacle its centre and radius (m, three numbers).
+        """
+
+        def _construct(
+            self, field: ArrayLike, obstacles: ArrayLike, masked: bool = False, *, converter: Any = None
+        ) -> None:
+            """Make the controller.
+
+            Args:
+                field: [ρ0, η] (m, N m²).
+                obstacles: centre and radius of each obstacle (m), shape (obstacles, 3).
+                masked: declare the port ``sensed``.
+                converter: for Drake's scalar conversion.
+            """
+            LeafSystem_[T].__init__(self, converter=converter)
+            self.arguments = (field, obstacles, masked)
+            self.kind = masked  # all else that it computes with is a parameter
+            count = len(np.reshape(obstacles, (-1, 3)))
+            self._zero = T(0.0)
+            self._everything = [1.0] * count
+            self._state = self.DeclareVectorInputPort("state", 4)
+            self._phase = self.DeclareVectorInputPort("phase", 1)
+            self._sensed = self.DeclareVectorInputPort("sensed", count) if masked else None
+            self.DeclareNumericParameter(BasicVector_[T](field))
+            self.DeclareNumericParameter(BasicVector_[T](np.ravel(obstacles)))
+            self.DeclareVectorOutputPort(
+                "force", 2, self._calc_force, {self.all_input_ports_ticket(), self.all_parameters_ticket()}
+            )
+
+        def _construct_copy(self, other: Any, converter: Any = None) -> None:
+            Impl._construct(self, *other.arguments, converter=converter)
+
+        def _calc_force(self, context: Any, output: Any) -> None:
+            x, y, _, _ = self._state.Eval(context).tolist()
+            (phase,) = self._phase.Eval(context).tolist()
+            sensing_range, gain = context.get_numeric_parameter(0).CopyToVector().tolist()
+            obstacles = context.get_numeric_parameter(1).CopyToVector().reshape(-1, 3).tolist()
+            sensed = self._sensed.Eval(context).tolist() if self._sensed else self._everything
+            fx = fy = self._zero
+            for seen, (ox, oy, radius) in zip(sensed, obstacles, strict=True):
+                gx, gy = avoidance_force(x - ox, y - oy, radius, sensing_range, gain)
+                fx, fy = fx + seen * gx, fy + seen * gy  # += would change an Expression in place
+            output.SetFromVector(np.array([phase * fx, phase * fy]))
+
+    return Impl
+
+
+ObstacleAvoidance = in_double(ObstacleAvoidance_)
+
+
+@part("avoidance", kind="khatib")
+class Khatib(Part):
+    """Khatib's repulsive potential around obstacles sensed during transport."""
+
+    class Config(Section):
+        """Range and strength of the field, and who feels it."""
+
+        range: Length = Field(default=1.3, description="sensing range ρ0 (m); inferred: 1.3")
+        gain: NonNegative = Field(default=31.56, description="repulsive gain η (N m²); inferred: 31.56")
+        sensing: Literal["in_range", "nearest"] = Field(
+            default="in_range",
+            description="in_range: every robot within range feels an obstacle; nearest: only the one nearest to it",
+        )
+
+    def structure(self) -> Hashable:
+        """Who feels an obstacle."""
+        sensing: str = self.config.sensing
+        return sensing
+
+    def numbers(self, formation: Formation, owner: int) -> Numbers:  # noqa: ARG002
+        """The field's range and gain, and the obstacles."""
+        return np.array([self.config.range, self.config.gain]), formation.obstacles
+
+    def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:  # noqa: ARG002
+        """The controller."""
+        return ObstacleAvoidance(*numbers, self.config.sensing == "nearest")

@@ -1,0 +1,14 @@
+"""The paper's channel: a wire."""
+
+from drake_formation.formation.formation import Formation
+from drake_formation.parts.part import Numbers, Part
+from drake_formation.parts.registry import part
+
+
+@part("channel", kind="ideal")
+class IdealChannel(Part):
+    """What is sent is received, at once and exactly, as the paper assumes."""
+
+    def block(self, formation: Formation, owner: int, numbers: Numbers) -> None:  # noqa: ARG002
+        """None: the listener's port is wired to the speaker's."""
+        return

@@ -1,0 +1,1 @@
+"""What robots do with what they hear from each other."""

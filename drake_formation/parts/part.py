@@ -1,0 +1,103 @@
+"""A part: one box of the diagram in one file, with its configuration, its law, its block and its numbers."""
+
+from collections.abc import Hashable, Iterator
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from pydrake.systems.framework import System
+
+from drake_formation.config.errors import Fault
+from drake_formation.config.values import Section
+from drake_formation.formation.formation import Formation
+
+Array = NDArray[np.float64]
+Numbers = tuple[Array, ...]
+"""Numeric parameters of a block, in order of their indices."""
+
+
+class Part:
+    """What the diagram knows of a box; subclasses are registered by :func:`drake_formation.parts.part`.
+
+    A part stands for one robot, edge or channel (its *owner*), or for the whole formation, as its role says. It holds
+    what was configured for that owner; all else it takes from the formation.
+
+    Attributes:
+        role: name of its role, a key of :data:`drake_formation.parts.roles.ROLES`.
+        kind: its name in scenarios.
+        distribution: the package that brings it.
+        Config: its fields, each with a description that says its unit; none by default. In scenarios a field of a
+            robot's part may be one value for all, a list or a mapping; here it is one robot's.
+        config: what was configured.
+    """
+
+    role: ClassVar[str]
+    kind: ClassVar[str]
+    distribution: ClassVar[str] = "drake-formation"
+    Config: ClassVar[type[Section]] = Section
+
+    def __init__(self, config: Any) -> None:
+        self.config = config
+
+    def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:  # noqa: ARG002
+        """What is wrong with the configuration in this formation; paths begin inside the part's section.
+
+        Args:
+            formation: where the part is.
+            owner: index of the robot, edge or channel, 0 for the formation's own.
+        """
+        return iter(())
+
+    def numbers(self, formation: Formation, owner: int) -> Numbers:  # noqa: ARG002
+        """The block's numeric parameters, in order of their indices; none by default."""
+        return ()
+
+    def structure(self) -> Hashable:
+        """What a new block is needed for when it changes: all that is configured and not a number."""
+        return ()
+
+    def block(self, formation: Formation, owner: int, numbers: Numbers) -> System | None:
+        """The block in double; it converts to AutoDiffXd and Expression.
+
+        Its ports are named as the role says. Its numeric parameters are the given ones.
+
+        Args:
+            formation: where the part is.
+            owner: as for :meth:`checks`.
+            numbers: from :meth:`numbers`.
+        """
+        raise NotImplementedError
+
+    def initial_state(self, formation: Formation, owner: int) -> Array | None:  # noqa: ARG002
+        """The block's continuous state at the start; None where its default is right for every scenario."""
+        return None
+
+
+class SpringLaw(Part):
+    """The law by which the carried object couples two robots; a part without a block, for plants carry it out.
+
+    The fields of its configuration are numbers of an edge, and the law's arguments in the order of their declaration.
+    """
+
+    role = "spring"
+
+    @staticmethod
+    def law(dx: Any, dy: Any, dvx: Any, dvy: Any, *numbers: Any) -> tuple[Any, Any]:
+        """Force with which the object draws robot i towards robot j.
+
+        Args:
+            dx: position of robot i relative to robot j (m), x component of q_i − q_j.
+            dy: its y component (m).
+            dvx: velocity of robot i relative to robot j (m/s), x component.
+            dvy: its y component (m/s).
+            numbers: the configured ones, then the desired displacement h_i − h_j (m), x and y component.
+
+        Returns:
+            Components of F_ij (N); the plant feels −F_ij.
+        """
+        raise NotImplementedError
+
+    def numbers(self, formation: Formation, owner: int) -> Numbers:  # noqa: ARG002
+        """The configured numbers of the edge."""
+        fields = type(self.config).model_fields
+        return (np.array([getattr(self.config, name) for name in fields], dtype=float),)

@@ -1,0 +1,1 @@
+"""Where the formation centre should be."""

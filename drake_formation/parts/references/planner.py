@@ -1,0 +1,178 @@
+"""A way around known obstacles, planned by an artificial potential field before the run.
+
+The formation centre flows down the potential U = ‖p − goal‖ + Σ ½ η (1/ρ − 1/ρ0)², the second part Khatib's (1986) for
+every known obstacle nearer than ρ0. An obstacle is a disc here: its radius and the formation's, so that ρ is the
+clearance of the robots, however they stand.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from pydrake.trajectories import PiecewisePolynomial
+
+from drake_formation.parts.references.waypoints import chord_shares, waypoint_trajectory
+
+Array = NDArray[np.float64]
+
+PIECES = 20
+"""Pieces of the smooth trajectory, as many for every plan: only then do two plans differ in numbers alone."""
+
+SAMPLES = 20
+"""Samples of a plan for every piece, and half the width of the averages that round its corners."""
+
+STEP = 0.05
+"""Step down the field within range of an obstacle, as a share of the clearance."""
+
+MOST_STEPS = 20_000
+PATIENCE = 100
+"""Steps after which a flow that has come no lower is stuck."""
+
+
+class StuckError(ValueError):
+    """The flow ended before the goal, in a local minimum of the field.
+
+    Attributes:
+        place: where (m), shape (2,).
+    """
+
+    def __init__(self, place: Array) -> None:
+        super().__init__(f"the flow is stuck at {place.tolist()}")
+        self.place = place
+
+
+@dataclass(frozen=True)
+class PotentialField:
+    """The potential of a goal and of known obstacles.
+
+    Attributes:
+        goal: where the attraction of unit strength pulls to (m), shape (2,).
+        discs: centre and radius of every known obstacle, the formation's radius included (m), shape (obstacles, 3).
+        clearance: where the repulsion balances the attraction (m), so that no flow comes nearer to a single disc.
+        reach: ρ0, beyond which nothing is felt (m), above the clearance. A disc near the goal reaches no farther than
+            the goal, which so remains a minimum; the goal must be farther than the clearance from it.
+    """
+
+    goal: Array
+    discs: Array
+    clearance: float
+    reach: float
+
+    def reaches(self) -> Array:
+        """ρ0 of every disc (m), shape (obstacles,)."""
+        result: Array = np.minimum(self.reach, clearances(self.goal, self.discs))
+        return result
+
+    def gains(self) -> Array:
+        """η of every disc (m³): the repulsion η (1/ρ − 1/ρ0)/ρ² is 1 where ρ is the clearance."""
+        result: Array = self.clearance**2 / (1 / self.clearance - 1 / self.reaches())
+        return result
+
+
+def plan(start: ArrayLike, field: PotentialField) -> Array:
+    """The way of the formation centre down the field, as a polygonal line.
+
+    A disc straight ahead leaves the flow on the ridge between the two ways around it. It starts a thousandth of the
+    clearance to the left of the line to the goal: any disturbance would decide, this one always alike.
+
+    Args:
+        start: where it begins (m), shape (2,), outside all discs.
+        field: the potential.
+
+    Returns:
+        Points from the start to the goal (m), shape (points, 2).
+
+    Raises:
+        StuckError: the flow ends before the goal.
+    """
+    reaches, gains = field.reaches(), field.gains()
+    begin = np.asarray(start, dtype=float)
+    if np.array_equal(begin, field.goal):
+        return np.array([begin, field.goal])
+    way = field.goal - begin
+    point = begin + 1e-3 * field.clearance * np.array([-way[1], way[0]]) / np.linalg.norm(way)
+    path, lowest, wasted = [begin], np.inf, 0
+    for _ in range(MOST_STEPS):
+        # Outside all reaches the flow is straight: one step leads to the next of them.
+        outside = (clearances(point, field.discs) - reaches).min(initial=np.inf)
+        step = max(STEP * field.clearance, float(outside))
+        if np.linalg.norm(field.goal - point) <= step:
+            return np.array([*path, field.goal])
+        potential, force = _potential(point, field, reaches, gains)
+        wasted = 0 if potential < lowest else wasted + 1
+        lowest = min(lowest, potential)
+        strength = np.linalg.norm(force)
+        if wasted > PATIENCE or strength == 0:
+            break
+        point = point + step * force / strength
+        path.append(point)
+    raise StuckError(point)
+
+
+def plan_trajectory(path: Array, field: PotentialField, duration: float) -> PiecewisePolynomial:
+    """A plan as a smooth trajectory from rest to rest.
+
+    The flow turns sharply where it meets a disc straight ahead. Two moving averages along the way round its corners;
+    where they cut into a clearance, the way is pushed out again. A curve is laid through points at equal distances.
+
+    Args:
+        path: from :func:`plan`: points (m), shape (points, 2), of which not all are one.
+        field: in which it was planned.
+        duration: how long it takes (s).
+
+    Returns:
+        Position (m, shape (2, 1)) over the time since the start (s), in ``PIECES`` pieces.
+    """
+    marks = np.linspace(0.0, 1.0, SAMPLES * PIECES + 1)
+    even = np.column_stack([np.interp(marks, chord_shares(path), axis) for axis in path.T])
+    for _ in range(2):
+        even = _pushed_clear(_averaged(even, SAMPLES), field)
+    return waypoint_trajectory(even[::SAMPLES], duration)
+
+
+def _averaged(points: Array, reach: int) -> Array:
+    """Mean of every point and as many on either side; continued beyond the ends by their images, which hold them."""
+    before, after = 2 * points[0] - points[reach:0:-1], 2 * points[-1] - points[-2 : -2 - reach : -1]
+    sums = np.cumsum(np.vstack([np.zeros((1, 2)), before, points, after]), axis=0)
+    result: Array = (sums[2 * reach + 1 :] - sums[: -2 * reach - 1]) / (2 * reach + 1)
+    return result
+
+
+def _pushed_clear(points: Array, field: PotentialField) -> Array:
+    """Points pushed straight out of the discs to the clearance, one disc after the other."""
+    for disc in field.discs:
+        away = points - disc[:2]
+        lengths = np.hypot(*away.T)[:, None]
+        missing = np.maximum(field.clearance + disc[2] - lengths, 0.0)
+        points = points + missing * away / np.maximum(lengths, np.finfo(float).tiny)
+    return points
+
+
+def clearances(point: ArrayLike, discs: Array) -> Array:
+    """Distance of points from every disc (m), shape (..., obstacles); negative inside."""
+    away = np.asarray(point, dtype=float)[..., None, :] - discs[:, :2]
+    result: Array = np.hypot(away[..., 0], away[..., 1]) - discs[:, 2]
+    return result
+
+
+def closest(path: Array, discs: Array) -> Array:
+    """Least distance of a polygonal line from every disc (m), between its points too; shape (obstacles,)."""
+    begin, way = path[:-1, None], np.diff(path, axis=0)[:, None]
+    offset = discs[:, :2] - begin
+    squared = np.maximum((way**2).sum(axis=-1), np.finfo(float).tiny)
+    along = np.clip((offset * way).sum(axis=-1) / squared, 0.0, 1.0)
+    result: Array = np.linalg.norm(offset - along[..., None] * way, axis=-1).min(axis=0) - discs[:, 2]
+    return result
+
+
+def _potential(point: Array, field: PotentialField, reaches: Array, gains: Array) -> tuple[float, Array]:
+    """Potential (m) and the force down it, shape (2,)."""
+    to_goal = field.goal - point
+    distance = np.linalg.norm(to_goal)
+    away = point - field.discs[:, :2]
+    from_centre = np.hypot(*away.T)
+    clearance = from_centre - field.discs[:, 2]
+    slope = np.maximum(1 / clearance - 1 / reaches, 0.0)
+    push = gains * slope / clearance**2
+    force: Array = to_goal / distance + (push / from_centre) @ away
+    return float(distance + (0.5 * gains * slope**2).sum()), force

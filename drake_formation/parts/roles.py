@@ -1,0 +1,119 @@
+"""The roles that parts play in a diagram: where each stands in a scenario, and which ports it may have."""
+
+from dataclasses import dataclass
+
+from drake_formation.config.errors import Path
+
+STATE = 4
+"""Numbers that robots tell each other: position q (m) and velocity v (m/s), in the world frame."""
+
+
+@dataclass(frozen=True)
+class Port:
+    """A port by which the diagram knows a part.
+
+    Attributes:
+        name: its name; ``_j`` at its end stands for the number of another robot, from 1, one port a robot.
+        size: how many numbers, or None where that depends on the scenario.
+        meaning: what they are, with their unit.
+        required: whether a part without it cannot play the role.
+    """
+
+    name: str
+    size: int | None
+    meaning: str
+    required: bool = False
+
+    def is_called(self, name: str) -> bool:
+        """Whether a port of a block is this one."""
+        stem, _, number = name.rpartition("_")
+        return name == self.name or (self.name.endswith("_j") and f"{stem}_j" == self.name and number.isdecimal())
+
+
+PHASE = Port("phase", 1, "0 aggregation, 1 transport")
+OWN_STATE = Port("state", STATE, "the robot's state [q; v] (m, m/s)")
+REFERENCE = Port("reference", 6, "motion of the formation centre [p; ṗ; p̈] (m, m/s, m/s²)")
+SENSED = Port("sensed", None, "for each obstacle 1 where no robot is nearer to it, else 0")
+HEARD = Port("channel_j", STATE, "the state that robot j sends, for every robot heard (m, m/s)")
+HELD = Port("spring_j", STATE, "the state of robot j, for every robot that the object couples (m, m/s)")
+FORCE = Port("force", 2, "control force (N)", required=True)
+KNOWN = (OWN_STATE, REFERENCE, PHASE, HEARD, SENSED)
+"""What any controller may ask for."""
+
+
+@dataclass(frozen=True)
+class Role:
+    """What a part does for a formation.
+
+    Attributes:
+        name: of the role.
+        section: where its configuration stands in a scenario.
+        block: what its block is called, inside its robot where it is a robot's.
+        default: the kind that counts where the scenario names none.
+        owner: of whom there is one part each: ``robot``, ``edge``, ``channel``, or ``formation``.
+        chooser: the key that names the kind.
+        inputs: ports that the diagram can wire.
+        outputs: ports that others read.
+    """
+
+    name: str
+    section: Path
+    block: str
+    default: str
+    owner: str
+    inputs: tuple[Port, ...] = ()
+    outputs: tuple[Port, ...] = ()
+    chooser: str = "kind"
+
+
+ROLES: dict[str, Role] = {
+    role.name: role
+    for role in (
+        Role(
+            "robot",
+            ("robots",),
+            "plant",
+            "point_mass",
+            "robot",
+            (FORCE, PHASE, HELD),
+            (
+                Port("state", STATE, "position and velocity where it holds the object (m, m/s)", required=True),
+                Port("spring_force", 2, "what the object exerts on the robot (N)", required=True),
+            ),
+        ),
+        Role("spring", ("springs",), "", "hookean", "edge", chooser="law"),
+        Role(
+            "tracking",
+            ("tracking",),
+            "tracking",
+            "lqr",
+            "robot",
+            KNOWN,
+            (FORCE, Port("error", STATE, "tracking error x − x_r (m, m/s)", required=True)),
+        ),
+        Role("coordination", ("consensus",), "consensus", "consensus", "robot", KNOWN, (FORCE,)),
+        Role("avoidance", ("avoidance",), "avoidance", "khatib", "robot", KNOWN, (FORCE,)),
+        Role(
+            "reference",
+            ("transport", "reference"),
+            "reference",
+            "set_point",
+            "formation",
+            (PHASE,),
+            (Port("centre", 6, "motion of the formation centre [p; ṗ; p̈] (m, m/s, m/s²)", required=True),),
+        ),
+        Role(
+            "channel",
+            ("consensus", "channel"),
+            "channel",
+            "ideal",
+            "channel",
+            (Port("sent", STATE, "the state of the robot that speaks (m, m/s)", required=True), PHASE),
+            (Port("received", STATE, "what the listening robot takes for it (m, m/s)", required=True),),
+        ),
+    )
+}
+"""By name. A robot's controllers are the roles with an output ``force``."""
+
+CONTROLLERS = ("tracking", "coordination", "avoidance")
+"""Roles whose forces on a robot add up to its control, in this order."""

@@ -1,0 +1,1 @@
+"""Laws by which the carried object couples two robots."""

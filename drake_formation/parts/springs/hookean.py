@@ -1,0 +1,53 @@
+"""Springs along the lines between robots (paper, Eq. 2)."""
+
+from pydantic import Field
+
+from drake_formation.config.values import NonNegative, Section
+from drake_formation.parts.part import SpringLaw
+from drake_formation.parts.registry import part
+from drake_formation.systems.scalars import Scalar
+
+
+def hookean_spring_force(
+    dx: Scalar, dy: Scalar, dvx: Scalar, dvy: Scalar, stiffness: Scalar, damping: Scalar, hx: Scalar, hy: Scalar
+) -> tuple[Scalar, Scalar]:
+    """Force F_ij that a spring draws robot i back with, along the line between the robots (paper, Eq. 2).
+
+    F_ij = (k (1 − r/d) + c ḋ/d) (q_i − q_j), with d = ‖q_i − q_j‖ and r = ‖h_i − h_j‖. The damper c ḋ is an
+    extension; the paper's springs have none.
+
+    Args:
+        dx: position of robot i relative to robot j (m), x component of q_i − q_j.
+        dy: its y component (m).
+        dvx: velocity of robot i relative to robot j (m/s), x component.
+        dvy: its y component (m/s).
+        stiffness: k_ij (N/m).
+        damping: c_ij (N s/m).
+        hx: desired displacement h_i − h_j (m), x component.
+        hy: its y component (m).
+
+    Returns:
+        Components of F_ij (N); the plant feels −F_ij.
+    """
+    distance = (dx * dx + dy * dy) ** 0.5
+    rest_length = (hx * hx + hy * hy) ** 0.5
+    approach = (dx * dvx + dy * dvy) / (distance * distance)
+    tension = stiffness * (1.0 - rest_length / distance) + damping * approach
+    return tension * dx, tension * dy
+
+
+class SpringNumbers(Section):
+    """Stiffness and damping of one spring."""
+
+    stiffness: NonNegative = Field(
+        default=1.45, description="k_ij (N/m), one for all or one an edge; published: 1.45 rubber, 3e4 steel"
+    )
+    damping: NonNegative = Field(default=0.0, description="c_ij (N s/m), one for all or one an edge; published: none")
+
+
+@part("spring", kind="hookean")
+class Hookean(SpringLaw):
+    """Springs that act along the lines between robots (paper, Eq. 2); they leave the formation free to turn."""
+
+    Config = SpringNumbers
+    law = staticmethod(hookean_spring_force)

@@ -1,0 +1,1 @@
+"""Local controllers: each robot on its own reference."""

@@ -1,1 +1,0 @@
-"""Sources of the reference: where the formation centre should be."""

@@ -1,0 +1,100 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drake_formation.parts.avoidance.khatib import ObstacleAvoidance, avoidance_force
+
+angles = st.floats(-np.pi, np.pi)
+radii = st.just(0.0) | st.floats(0.01, 2)
+ranges = st.floats(0.5, 3)
+gains = st.floats(0.1, 100)
+shares = st.floats(0.1, 0.99)
+
+
+def potential(dx, dy, radius, sensing_range, gain):
+    """Khatib's potential η/2 (1/ρ − 1/ρ0)² within range."""
+    clearance = np.hypot(dx, dy) - radius
+    return gain / 2 * max(1 / clearance - 1 / sensing_range, 0) ** 2
+
+
+def away(angle, distance):
+    return distance * np.cos(angle), distance * np.sin(angle)
+
+
+@given(angles, radii, ranges, gains, st.floats(1, 10))
+def test_nothing_is_felt_out_of_range(angle, radius, sensing_range, gain, share):
+    force = avoidance_force(*away(angle, radius + share * sensing_range * (1 + 1e-9)), radius, sensing_range, gain)
+    assert force == (0, 0)
+
+
+@given(angles, radii, ranges, gains)
+def test_the_force_begins_continuously_at_the_range(angle, radius, sensing_range, gain):
+    inside = avoidance_force(*away(angle, radius + sensing_range * (1 - 1e-9)), radius, sensing_range, gain)
+    assert inside == pytest.approx((0, 0), abs=gain * 1e-8 / sensing_range**3)
+
+
+@given(angles, radii, ranges, gains, shares)
+def test_the_force_points_away_from_the_obstacle(angle, radius, sensing_range, gain, share):
+    dx, dy = away(angle, radius + share * sensing_range)
+    fx, fy = avoidance_force(dx, dy, radius, sensing_range, gain)
+    assert fx * dx + fy * dy > 0
+    assert fx * dy - fy * dx == pytest.approx(0, abs=1e-12 * np.hypot(fx, fy) * np.hypot(dx, dy))
+
+
+@given(angles, radii, ranges, gains, shares)
+def test_the_force_is_the_slope_of_khatibs_potential(angle, radius, sensing_range, gain, share):
+    dx, dy = away(angle, radius + share * sensing_range)
+    field, step = (radius, sensing_range, gain), 1e-5 * share * sensing_range
+    slope = (
+        (potential(dx + step, dy, *field) - potential(dx - step, dy, *field)) / (2 * step),
+        (potential(dx, dy + step, *field) - potential(dx, dy - step, *field)) / (2 * step),
+    )
+    force = avoidance_force(dx, dy, *field)
+    assert force == pytest.approx(tuple(-s for s in slope), rel=1e-4, abs=1e-5 * np.hypot(*force) + 1e-9 * gain)
+
+
+@given(angles, st.floats(0.01, 2), ranges, gains, shares)
+def test_a_round_obstacle_is_felt_as_a_point_at_its_surface(angle, radius, sensing_range, gain, share):
+    clearance = share * sensing_range
+    round_one = avoidance_force(*away(angle, radius + clearance), radius, sensing_range, gain)
+    point = avoidance_force(*away(angle, clearance), 0.0, sensing_range, gain)
+    assert round_one == pytest.approx(point, rel=1e-6, abs=1e-9 * np.hypot(*point))
+
+
+def test_the_law_takes_arrays():
+    dx, dy = np.array([0.5, 2.0]), np.array([0.5, 2.0])
+    fx, fy = avoidance_force(dx, dy, 0.0, 1.3, 31.56)
+    assert (fx[0], fy[0]) == pytest.approx(avoidance_force(0.5, 0.5, 0.0, 1.3, 31.56))
+    assert (fx[1], fy[1]) == (0, 0)
+
+
+OBSTACLES = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.2]]
+
+
+def force(phase=1.0, sensed=None):
+    block = ObstacleAvoidance([1.3, 31.56], OBSTACLES, masked=sensed is not None)
+    context = block.CreateDefaultContext()
+    block.GetInputPort("state").FixValue(context, [0.0, 0.1, 5.0, 5.0])
+    block.GetInputPort("phase").FixValue(context, [phase])
+    if sensed is not None:
+        block.GetInputPort("sensed").FixValue(context, sensed)
+    return block.GetOutputPort("force").Eval(context).tolist()
+
+
+def single(obstacle):
+    x, y, radius = OBSTACLES[obstacle]
+    return np.array(avoidance_force(0.0 - x, 0.1 - y, radius, 1.3, 31.56))
+
+
+def test_the_forces_of_all_obstacles_add():
+    assert force() == pytest.approx(single(0) + single(1))
+
+
+def test_no_obstacle_is_felt_during_aggregation():
+    assert force(phase=0.0) == [0, 0]
+
+
+@pytest.mark.parametrize("sensed", [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]])
+def test_only_sensed_obstacles_are_felt(sensed):
+    assert force(sensed=sensed) == pytest.approx(sensed[0] * single(0) + sensed[1] * single(1))

@@ -19,6 +19,7 @@ from drake_formation.diagram import build_diagram
 from drake_formation.formation.formation import Formation
 from drake_formation.parameters import find_block, robot_name
 from drake_formation.scenario import Scenario, resolve, with_overrides
+from drake_formation.systems.templates import CONVERTING
 
 Array = NDArray[np.float64]
 
@@ -166,7 +167,8 @@ class StateMatrix:
     """
 
     def __init__(self, diagram: Diagram) -> None:
-        self._diagram = diagram.ToAutoDiffXd()
+        with CONVERTING:
+            self._diagram = diagram.ToAutoDiffXd()
         self._context = self._diagram.CreateDefaultContext()
 
     def at(self, context: Context) -> Array:

@@ -13,9 +13,11 @@ from drake_formation.lowering.errors import LoweringError
 from drake_formation.lowering.events import Updates
 from drake_formation.lowering.hoisting import HOISTED
 from drake_formation.lowering.integration import METHODS, Flow, Status, Steps, Trajectory
+from drake_formation.lowering.logs import Logs
 from drake_formation.lowering.schedule import Layout, Table
 from drake_formation.lowering.source import derivatives_source, outputs_source
 from drake_formation.lowering.wiring import Port, Wiring
+from drake_formation.systems.templates import CONVERTING
 
 Array = NDArray[np.float64]
 
@@ -32,7 +34,8 @@ class CompiledDiagram:
     def __init__(self, diagram: Diagram) -> None:
         wiring = Wiring(diagram)
         self.diagram = diagram
-        self.updates = Updates(diagram, wiring)
+        self.updates = Updates(wiring)
+        self.logs = Logs(wiring.blocks)
         self._wiring = wiring
         self._layout = Layout(wiring, _state_addresses(diagram, wiring))
         program = self._layout.derivatives()
@@ -46,12 +49,20 @@ class CompiledDiagram:
                 self._groups_of[block].append((space, group, address))
         self._outputs: dict[tuple[str, ...], tuple[Callable[..., None], Table, Table]] = {}
 
-    def read(self, context: Context) -> Array:
+    def read(self, context: Context, *, wired: bool = False) -> Array:
         """Values of a Context of the diagram: its parameters, discrete state and inputs, and what follows from them.
+
+        Args:
+            context: a Context of the diagram.
+            wired: it is known that no connected input port has a fixed value in the Context, which takes some time to
+                find out.
 
         Raises:
             ValueError: an input that is needed has no value.
+            LoweringError: a connected input port has a fixed value, which Drake lets take the connection's place.
         """
+        if not wired:
+            self._require_wired(context)
         values = np.zeros(self._layout.size)
         for block, path in ((block, path) for path, block in self._wiring.blocks.items()):
             own = block.GetMyContextFromRoot(context)
@@ -69,6 +80,17 @@ class CompiledDiagram:
                 values[address : address + len(found)] = found
         self._prepare(values, self._table)
         return values
+
+    def _require_wired(self, context: Context) -> None:
+        """Refuse fixed values on connected ports: what such a port gives is not what its source gives, but a copy."""
+        for block, port, source, output in self._layout.wires:
+            given = _evaluated(source.get_output_port(output), source.GetMyContextFromRoot(context))
+            taken = _evaluated(block.get_input_port(port), block.GetMyContextFromRoot(context))
+            if taken is not given:
+                name, path = block.get_input_port(port).get_name(), self._layout.blocks[block].path
+                raise LoweringError(
+                    path, f"its input port {name!r} is connected, and has a fixed value in this Context"
+                )
 
     def derivatives(self, time: float, state: Array, values: Array) -> Array:
         """Time derivatives of the continuous state.
@@ -114,10 +136,12 @@ class CompiledDiagram:
         adaptive: bool = True,
         at: Array = EVERY_STEP,
         updated: bool = False,
+        wired: bool = False,
     ) -> Iterator[Trajectory]:
         """Integrate from a Context's time and state, which go along, to the end or to what stops it.
 
-        Drake carries out the diagram's updates at their times, those at the start included, those at the end not.
+        The diagram's updates are carried out at their times, those at the start included, those at the end not. Its
+        logs record at theirs, the start and the end included; those of every step record every sample.
 
         Args:
             context: a Context of the diagram.
@@ -127,35 +151,52 @@ class CompiledDiagram:
             accuracy: largest error of any state in one step.
             max_step: largest step (s).
             adaptive: control the step; else every step is the largest.
-            at: times to sample at (s), rising; where empty every accepted step is a sample.
+            at: times to sample at (s), rising, from the Context's time to the end; where empty every accepted step is a
+                sample. At the time of an update the sample is taken after it, at the end before it.
             updated: whether the updates due at the start have been carried out.
+            wired: as for :meth:`read`.
 
         Yields:
             The trajectory in pieces, the last of which is ``DONE`` or says why there are no more; where its status is
             ``NOT_FINITE``, the Context holds the state that is not.
 
         Raises:
-            ValueError: there is no such method.
+            ValueError: there is no such method, or the times do not rise or are not within the integration.
+            LoweringError: as for :meth:`read`.
         """
         if method not in METHODS:
             raise ValueError(f"no method {method!r}; there are {', '.join(METHODS)}")
+        if len(at) and not ((np.diff(at) > 0).all() and context.get_time() <= at[0] and at[-1] <= end):
+            raise ValueError(f"times to sample at must rise from {context.get_time():g} s to {end:g} s at most")
         steps = Steps(accuracy, max_step, adaptive)
         state = context.get_continuous_state_vector().CopyToVector()
+        if not wired:
+            self._require_wired(context)
+        self.logs.record_step(context)
+        self.logs.record_due(context)
         while (begin := context.get_time()) < end:
             if not updated:
                 self.updates.carry_out(context)
             updated = False
-            flow = Flow(self._derivatives, self._table, self.read(context))
-            stop = self.updates.after(begin, end)
+            flow = Flow(self._derivatives, self._table, self.read(context, wired=True))
+            stop = self.logs.after(begin, self.updates.after(begin, end))
             wanted = at[(at >= begin) & ((at < stop) | (stop == end) & (at <= end))]
             for piece in METHODS[method](flow, begin, stop, state, steps, wanted, not len(at)):
+                for time, sample in zip(piece.times, piece.states, strict=True) if self.logs.every_step else ():
+                    context.SetTimeAndContinuousState(time, sample)
+                    self.logs.record_step(context)
                 context.SetTimeAndContinuousState(piece.reached, state)
+                self.logs.record_due(context)
                 done = piece.status == Status.DONE
                 yield replace(piece, status=Status.FULL) if done and stop < end else piece
             if not done:
                 return
 
     def _compiled_outputs(self, names: tuple[str, ...]) -> tuple[Callable[..., None], Table, Table]:
+        with CONVERTING:
+            return self._known_outputs(names)
+
+    def _known_outputs(self, names: tuple[str, ...]) -> tuple[Callable[..., None], Table, Table]:
         if names not in self._outputs:
             ports = [self.diagram.GetOutputPort(name) for name in names]
             sources: list[Port] = [self._wiring.leaf(self.diagram, int(port.get_index())) for port in ports]
@@ -178,13 +219,30 @@ def lower(diagram: Diagram) -> CompiledDiagram:
     compiled function that runs over all its blocks. The code is kept on disk:
     see :mod:`drake_formation.lowering.cache`.
 
+    What a compiled run does is what Drake's Simulator does, with one difference: every periodic update is carried out,
+    also where Drake misses one by rounding (see :mod:`drake_formation.lowering.ticks`). What it would leave out is
+    refused: abstract state and parameters, witness functions, events of each step or of the initialization,
+    unrestricted updates, publishing by blocks that are not Drake's logs. Blocks of Python's must be templates over
+    Drake's scalars, even where nothing depends on them, for only their conversion tells which events they have.
+
     Args:
         diagram: any Drake diagram of continuous blocks and of blocks with one periodic discrete update.
+
+    Several threads may do so at once; they take turns. A compiled diagram is one thread's own, as its Contexts are.
 
     Raises:
         LoweringError: a block cannot be compiled; it is named.
     """
-    return CompiledDiagram(diagram)
+    with CONVERTING:
+        return CompiledDiagram(diagram)
+
+
+def _evaluated(port: Any, context: Context) -> Any:
+    """The very value of a port; None where something before it is missing."""
+    try:
+        return port.EvalAbstract(context)
+    except RuntimeError:
+        return None
 
 
 def _state_addresses(diagram: Diagram, wiring: Wiring) -> dict[Any, int]:

@@ -1,81 +1,63 @@
 """The updates of a diagram: when Drake changes discrete state, and refusing what else it may change."""
 
-from collections.abc import Iterator
-from types import CodeType
+from typing import Any
 
 import numpy as np
-from pydrake.systems.analysis import Simulator
-from pydrake.systems.framework import Context, Diagram
+from pydrake.systems.framework import Context
+from pydrake.systems.primitives import VectorLogSink
 
+from drake_formation.lowering.declared import is_pythons, require_quiet
 from drake_formation.lowering.errors import LoweringError
+from drake_formation.lowering.ticks import Ticks
 from drake_formation.lowering.wiring import Wiring
-
-UNREPORTED = {
-    "DeclarePerStepDiscreteUpdateEvent",
-    "DeclarePerStepUnrestrictedUpdateEvent",
-    "DeclarePerStepEvent",
-    "DeclarePeriodicUnrestrictedUpdateEvent",
-    "DeclarePeriodicEvent",
-    "DeclareInitializationDiscreteUpdateEvent",
-    "DeclareInitializationUnrestrictedUpdateEvent",
-    "DeclareInitializationEvent",
-}
-"""Updates that Drake does not report to Python; a block of Python's that declares one is found by its code."""
 
 
 class Updates:
-    """The periodic discrete updates of a diagram. Drake itself carries them out, between compiled integrations.
+    """The periodic discrete updates of a diagram, carried out between compiled integrations.
+
+    Args:
+        wiring: the diagram's blocks.
 
     Raises:
-        LoweringError: a block has abstract state, witness functions, or updates other than one periodic discrete one.
+        LoweringError: a block has abstract state, abstract parameters or witness functions, or it is one of C++ with
+            events other than one periodic discrete update. What blocks of Python's declare is seen when they are
+            traced; see :mod:`drake_formation.lowering.declared`.
     """
 
-    def __init__(self, diagram: Diagram, wiring: Wiring) -> None:
-        self._diagram = diagram
-        self._timings: set[tuple[float, float]] = set()
+    def __init__(self, wiring: Wiring) -> None:
+        self._updates: dict[Ticks, list[Any]] = {}
         for path, block in wiring.blocks.items():
             context = block.CreateDefaultContext()
             timing = block.GetUniquePeriodicDiscreteUpdateAttribute()
             if context.num_abstract_states():
                 raise LoweringError(path, "it has abstract state")
+            if context.num_abstract_parameters():
+                raise LoweringError(path, "it has abstract parameters, whose values in a Context are not looked at")
             if block.GetWitnessFunctions(context):
                 raise LoweringError(path, "it has witness functions")
-            if context.num_discrete_state_groups() and not timing:
-                raise LoweringError(path, "it has discrete state without a single periodic update of it")
-            if declared := UNREPORTED.intersection(_names(type(block))):
-                raise LoweringError(path, f"it may change its state at any time ({', '.join(sorted(declared))})")
+            if not is_pythons(block) and not isinstance(block, VectorLogSink):
+                require_quiet(path, block)
+                if context.num_discrete_state_groups() and not timing:
+                    raise LoweringError(path, "it has discrete state without a single periodic update of it")
             if timing:
-                self._timings.add((timing.offset_sec(), timing.period_sec()))
+                ticks = Ticks(timing.offset_sec(), timing.period_sec())
+                self._updates.setdefault(ticks, []).append(block)
 
     def after(self, time: float, end: float) -> float:
         """The next time after this one at which there is an update, at most the end."""
-        times = [end]
-        for offset, period in self._timings:
-            count = 0 if time < offset else np.floor((time - offset) / period)
-            times += [moment for k in range(3) if (moment := offset + (count + k) * period) > time]
-        return float(min(times))
+        return min([end, *(ticks.after(time) for ticks in self._updates)])
 
     def carry_out(self, context: Context) -> None:
-        """Let Drake carry out the updates that are due at the Context's time."""
-        if not self._timings:
-            return
-        simulator = Simulator(self._diagram, context)
-        simulator.Initialize()
-        simulator.AdvancePendingEvents()
+        """Carry out the updates that are due at the Context's time; all see what was there before any of them."""
+        due = [block for ticks, blocks in self._updates.items() if ticks.is_one(context.get_time()) for block in blocks]
+        updated = [(block, _updated(block, block.GetMyContextFromRoot(context))) for block in due]
+        for block, groups in updated:
+            own = block.GetMyMutableContextFromRoot(context)
+            for group, values in enumerate(groups):
+                own.SetDiscreteState(group, values)
 
 
-def _names(kind: type) -> Iterator[str]:
-    """Every name that the methods of a block's Python classes use."""
-    for base in kind.__mro__:
-        if base.__module__.startswith("pydrake"):
-            continue
-        for member in vars(base).values():
-            if code := getattr(member, "__code__", None):
-                yield from _code_names(code)
-
-
-def _code_names(code: CodeType) -> Iterator[str]:
-    yield from code.co_names
-    for constant in code.co_consts:
-        if isinstance(constant, CodeType):
-            yield from _code_names(constant)
+def _updated(block: Any, context: Context) -> list[np.ndarray[Any, np.dtype[np.float64]]]:
+    """The discrete state of a block after its update."""
+    values = block.EvalUniquePeriodicDiscreteUpdate(context)
+    return [np.array(values.get_vector(k).CopyToVector()) for k in range(values.num_groups())]

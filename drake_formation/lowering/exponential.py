@@ -22,6 +22,15 @@ ORDER = 4
 GROW = 1 / 64
 """Share of the accuracy below which steps are doubled; their error becomes some 32 times as large."""
 
+SMOOTH = 1e2
+"""Where every step is sampled, the middle of two may be so many times the accuracy off the cubic through their ends.
+
+What is read between samples goes by position, velocity and acceleration at both ends of one step, which is far nearer;
+so ringing that matters shortens the steps until it shows.
+"""
+SMOOTHER = 1 / 32
+"""Share of that below which steps are doubled; it becomes some 16 times as large."""
+
 _vector, _matrix, _table = types.float64[::1], types.float64[:, ::1], types.uint32[::1]
 _functions = types.float64[:, :, :, ::1]
 _derivatives = types.FunctionType(types.void(types.float64, _vector, _vector, _table, _vector))
@@ -103,6 +112,17 @@ def distance(x, y):  # type: ignore[no-untyped-def]
     return result
 
 
+@njit(**OPTIONS)
+def off_the_cubic(u, middle, y, g1, g3, j, h, p, q):  # type: ignore[no-untyped-def]
+    """How far the middle of two steps of length h is off the cubic through their ends, in any state."""
+    product(j, u, p)
+    product(j, y, q)
+    for i in range(u.size):
+        slopes = p[i] + g1[i] - q[i] - g3[i]
+        p[i] = 0.5 * (u[i] + y[i]) + 0.25 * h * slopes
+    return distance(middle, p)
+
+
 @njit(_signature, cache=True, **OPTIONS)
 def integrate(derivatives, clock, stops, x, m, table, j, phi, longest, accuracy, adaptive, every, times, states):  # type: ignore[no-untyped-def]  # noqa: PLR0915
     """Integrate to some times, which lie apart by a multiple of one length.
@@ -152,11 +172,14 @@ def integrate(derivatives, clock, stops, x, m, table, j, phi, longest, accuracy,
             rest(derivatives, reached, y, m, table, j, g3)
             evaluations += 8
             error = distance(y, y - y)
+            bend = 0.0
             if adaptive:
                 step(derivatives, t, 2.0 * h, u, g1, m, table, j, whole, half, work, coarse)
                 evaluations += 3
                 error = distance(y, coarse) / ((2.0**ORDER - 1.0) * accuracy)
-                if not error <= 1.0 and level < levels - 1:
+                if every:
+                    bend = off_the_cubic(u, middle, y, g1, g3, j, h, work[0], work[1]) / (SMOOTH * accuracy)
+                if not (error <= 1.0 and bend <= 1.0) and level < levels - 1:
                     rejected += 2
                     level += 1
                     continue
@@ -176,7 +199,7 @@ def integrate(derivatives, clock, stops, x, m, table, j, phi, longest, accuracy,
             position += stride
             u, y = y, u
             g1, g3 = g3, g1
-            if adaptive and error < GROW and level > 0 and position % (2 * stride) == 0:
+            if adaptive and error < GROW and bend < SMOOTHER and level > 0 and position % (2 * stride) == 0:
                 level -= 1
         if not every:
             times[samples], states[samples] = t, u

@@ -2,7 +2,7 @@
 
 import functools
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from itertools import groupby
 from pathlib import Path
@@ -21,6 +21,10 @@ CHUNK = 4096
 """Samples after which a compiled integrator reports."""
 LEVELS = 14
 """The exponential method's shortest steps are the longest halved so many times."""
+JUMPED = 6
+"""Halvings of two longest steps that the other method takes over for."""
+NEARLY = 1e-6
+"""Share of a length by which rounding may change it."""
 FIRST_LEVEL = 3.0
 """Halvings of its first step: Drake starts with a tenth of the largest, and this is the level nearest to it."""
 
@@ -130,41 +134,62 @@ def exponential(
     """An exponential Runge-Kutta method of order 4; see :mod:`drake_formation.lowering.exponential`.
 
     It is linearized where it starts, and anew after every piece. Where it samples at given times its steps end at
-    them, which is quickest where they are evenly spaced.
+    them, which is quickest where they are evenly spaced. Where its shortest steps are too long, as they are across a
+    jump of the derivatives, the Dormand-Prince pair takes over for a moment. Without continuous state there is nothing
+    to linearize.
     """
-    integrate = _compiled("exponential")
+    if not len(state):
+        yield from dormand_prince(flow, begin, end, state, steps, at, every)
+        return
+    if len(at) and at[0] == begin:
+        yield Trajectory(at[:1], state[None].copy(), flow.values, Status.FULL, begin, evaluations=0, rejected=0)
+    wanted = at[at > begin]
+    targets = wanted if len(wanted) and wanted[-1] == end else np.append(wanted, end)
     clock = np.array([begin, FIRST_LEVEL])
-    stops = np.zeros(0) if every else at[at > begin]
-    at_begin = not every and len(at) > len(stops)
-    if at_begin:
-        yield Trajectory(
-            np.array([begin]), state[None].copy(), flow.values, Status.FULL, begin, evaluations=0, rejected=0
-        )
-    ends = stops if len(stops) and stops[-1] == end else np.append(stops, end)
-    for length, group in _evenly_spaced(begin, ends):
-        finished = False
-        while not finished:
+    for length, group in _evenly_spaced(begin, targets):
+        while clock[0] < group[-1]:
             remaining = group[group > clock[0]]
-            span = remaining[0] - clock[0] if every else length
-            pair = span / np.ceil(span / (2.0 * steps.longest) - 1e-9)
-            jacobian = flow.jacobian(clock[0], state)
-            functions = phi_functions(pair * jacobian, LEVELS)
-            times, states = _room(CHUNK if every else len(remaining), state)
-            code, count, evaluations, rejected = integrate(
-                flow.derivatives, clock, remaining, state, flow.values, flow.table, jacobian, functions, pair,
-                steps.accuracy, steps.adaptive, every, times, states,
-            )  # fmt: skip
-            status, finished = Status(code), code != Status.FULL
-            if status == Status.DONE and clock[0] < end:
-                status = Status.FULL
-            sampled = count if every or len(at) else 0
-            if sampled and not every and times[sampled - 1] > at[-1]:
-                sampled -= 1  # the end, which nobody asked for
-            yield Trajectory(
-                times[:sampled], states[:sampled], flow.values, status, clock[0], evaluations + 2 * len(state), rejected
-            )
-            if status in (Status.NOT_FINITE, Status.STEP_TOO_SMALL):
-                return
+            evenly = not every and abs(clock[0] + length - remaining[0]) <= NEARLY * length  # no jump has come between
+            span = length if evenly else remaining[0] - clock[0]
+            for piece in _exponential_piece(
+                flow, clock, state, steps, every, remaining if evenly else remaining[:1], span
+            ):
+                named = piece if every or not len(piece.times) or piece.times[-1] in wanted else _shortened(piece)
+                yield replace(named, status=Status.FULL) if piece.status == Status.DONE and clock[0] < end else named
+                if piece.status in (Status.NOT_FINITE, Status.STEP_TOO_SMALL):
+                    return
+
+
+def _shortened(piece: Trajectory) -> Trajectory:
+    """A piece without its last sample: the end, which nobody asked for."""
+    return replace(piece, times=piece.times[:-1], states=piece.states[:-1])
+
+
+def _exponential_piece(
+    flow: Flow, clock: Array, state: Array, steps: Steps, every: bool, stops: Array, span: float
+) -> Iterator[Trajectory]:
+    """To some stops that lie a span apart, or as far as there is room; clock and state go along."""
+    pair = span / max(1.0, np.ceil(span / (2.0 * steps.longest) - 1e-9))
+    jacobian = flow.jacobian(clock[0], state)
+    functions = phi_functions(pair * jacobian, LEVELS)
+    times, states = _room(CHUNK if every else len(stops), state)
+    code, count, evaluations, rejected = _compiled("exponential")(
+        flow.derivatives, clock, stops, state, flow.values, flow.table, jacobian, functions, pair, steps.accuracy,
+        steps.adaptive, every, times, states,
+    )  # fmt: skip
+    status = Status(code)
+    jump = status == Status.STEP_TOO_SMALL
+    evaluations += 2 * len(state)
+    yield Trajectory(
+        times[:count], states[:count], flow.values, Status.FULL if jump else status, clock[0], evaluations, rejected
+    )
+    if jump:
+        stop = stops[stops > clock[0]][0]
+        over = min(stop, clock[0] + pair / 2**JUMPED) if every else stop
+        for piece in dormand_prince(flow, clock[0], over, state, steps, np.array([over])[: not every], every):
+            clock[0] = piece.reached
+            yield piece
+        clock[1] = FIRST_LEVEL
 
 
 METHODS: dict[str, Method] = {"dormand_prince": dormand_prince, "exponential": exponential}

@@ -88,12 +88,25 @@ class KindTable:
     Every block is traced, for what it computes may depend on attributes that Drake does not know; comparing its
     expressions with a kind's is quick, and reading them is done once a kind. A block may spare itself the trace by an
     attribute ``kind``: blocks of one class whose ``kind`` is equal promise to compute the same of the inputs, state
-    and parameters that they read.
+    and parameters that they read, and to declare the same events.
     """
 
     def __init__(self) -> None:
         self._traced: dict[Any, list[tuple[list[Any], Kind]]] = {}
         self._promised: dict[Any, Kind] = {}
+        self._quiet: set[Any] = set()
+
+    def require_known_events(self, block: TracedBlock) -> None:
+        """Refuse a block of Python's whose events a compiled run would leave out.
+
+        Raises:
+            LoweringError: it has such events, or they cannot be known.
+        """
+        promise = getattr(block.block, "kind", None)
+        family = (promise, type(block.block), block.sizes)
+        if promise is None or family not in self._quiet:
+            block.require_known_events()
+            self._quiet.add(family)
 
     def find(self, block: TracedBlock, function: int) -> Kind:
         """The kind of a block's output port or time derivatives.

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from drake_formation.lowering.declared import is_pythons
 from drake_formation.lowering.emit import Kernel
 from drake_formation.lowering.errors import LoweringError
 from drake_formation.lowering.expressions import Leaf
@@ -86,6 +87,9 @@ class Layout:
                     if size >= 0 and (space != "input" or not wiring.source(block, group)):
                         self.groups[block, space, group] = self._allocate(size)
         self._outputs: dict[Any, Job | None] = {}
+        for block, traced in self.blocks.items():
+            if is_pythons(block):
+                self._kinds.require_known_events(traced)
 
     def address(self, block: Any, port: int) -> int:
         """Address of an output port of a block."""
@@ -133,6 +137,16 @@ class Layout:
         """The level at which everything is there that a kind reads, from 0."""
         self.used_inputs |= {(block, port) for port in kind.ports if (block, "input", port) in self.groups}
         return max((job.level + (not job.kind.copied) for job in self._sources(block, kind)), default=0)
+
+    @property
+    def wires(self) -> list[tuple[Any, int, Any, int]]:
+        """Input ports that are fed by output ports: block, port, source, its port."""
+        found = []
+        for block, traced in self.blocks.items():
+            for port, size in enumerate(traced.sizes[0]):
+                if size >= 0 and (source := self._wiring.source(block, port)):
+                    found.append((block, port, *source))
+        return found
 
     def _leaf_address(self, block: Any, leaf: Leaf) -> int:
         source = self._wiring.source(block, leaf.group) if leaf.space == "input" else None

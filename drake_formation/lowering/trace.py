@@ -8,6 +8,7 @@ import numpy as np
 from pydrake.symbolic import Expression, Variable
 from pydrake.systems.framework import Context, LeafSystem, PortDataType
 
+from drake_formation.lowering.declared import recorded, require_known_events
 from drake_formation.lowering.errors import LoweringError
 from drake_formation.lowering.expressions import Leaf
 
@@ -113,15 +114,29 @@ class TracedBlock:
             else:
                 values = system.get_output_port(function).Eval(context)
         except Exception as error:
-            raise LoweringError(self.path, f"its code does not run in symbols: {error}") from error
+            raise LoweringError(self.path, f"its code does not run in symbols: {_reason(error)}") from error
         return list(np.ravel(values))
+
+    def require_known_events(self) -> None:
+        """Refuse events that a compiled run would leave out; the block, which is of Python's, is converted for that.
+
+        Raises:
+            LoweringError: there are such events, or the block does not convert, so that they cannot be known.
+        """
+        require_known_events(self.path, self.block, *self._converted)
+
+    @cached_property
+    def _converted(self) -> tuple[Any, list[str]]:
+        """The block in symbols, and which events it declared."""
+        try:
+            with recorded() as declared:
+                return self.block.ToSymbolic(), declared
+        except Exception as error:
+            raise LoweringError(self.path, f"it does not convert to Drake's symbolic scalar: {error}") from error
 
     @cached_property
     def _symbolic(self) -> tuple[Any, Context]:
-        try:
-            system = self.block.ToSymbolic()
-        except Exception as error:
-            raise LoweringError(self.path, f"it does not convert to Drake's symbolic scalar: {error}") from error
+        system, _ = self._converted
         context = system.CreateDefaultContext()
         symbols = self.symbols
         context.SetTime(symbols.time)
@@ -135,6 +150,26 @@ class TracedBlock:
         for k, values in enumerate(symbols.parameters):
             context.get_mutable_numeric_parameter(k).SetFromVector(values)
         return system, context
+
+
+CHOICE = (
+    "it asks whether an expression is true, as `if`, `and`, `max`, `np.maximum` and `np.clip` do; write "
+    "pydrake.symbolic's `if_then_else`, `max` and `min`, or the functions of drake_formation.systems.scalars, which "
+    "take floats too"
+)
+ADVICE = {
+    "__bool__": CHOICE,
+    "truth value": CHOICE,
+    "must be real number": "it calls a function of `math`, which takes floats alone; write NumPy's or pydrake.math's",
+    "object arrays must be copied": "it reads a vector by `value()`; `CopyToVector()` is what every scalar has",
+    "TrajectorySource": "a trajectory's pieces are no symbols; play it by "
+    "drake_formation.parts.references.trajectory.TrajectoryReference, which takes the numbers of `trajectory_tables`",
+}
+"""What is wrong and what to write instead, by what is said when a block asks of symbols what they cannot do."""
+
+
+def _reason(error: Exception) -> str:
+    return next((advice for words, advice in ADVICE.items() if words in str(error)), str(error))
 
 
 def _vector_size(port: Any) -> int:

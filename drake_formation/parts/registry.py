@@ -3,6 +3,7 @@
 import functools
 import importlib
 import pkgutil
+import threading
 from collections.abc import Callable
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any, TypeVar
@@ -15,6 +16,7 @@ GROUP = "drake_formation.parts"
 
 Class = TypeVar("Class", bound=type[Part])
 
+_FINDING = threading.RLock()
 _parts: dict[str, dict[str, type[Part]]] = {role: {} for role in ROLES}
 _broken: dict[str, dict[str, str]] = {role: {} for role in ROLES}
 _listeners: list[Callable[[], None]] = []
@@ -94,9 +96,14 @@ def when_changed(listener: Callable[[], None]) -> None:
     _listeners.append(listener)
 
 
-@functools.cache
 def find_all() -> None:
-    """Import the parts of this package, and those that installed packages announce."""
+    """Import the parts of this package, and those that installed packages announce; once."""
+    with _FINDING:
+        _find_all()
+
+
+@functools.cache
+def _find_all() -> None:
     import drake_formation.parts as package
 
     for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):

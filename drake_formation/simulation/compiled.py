@@ -94,6 +94,7 @@ class CompiledRun:
             max_step=self._max_step,
             adaptive=not self.fixed_step,
             updated=True,
+            wired=True,
         )
         for piece in pieces:
             self.recording.add(piece.times, piece.states, piece.values)
@@ -112,7 +113,7 @@ class CompiledRun:
         self._updated_at = time
         self._lowered.updates.carry_out(self.context)
         state = self.context.get_continuous_state_vector().CopyToVector()
-        self.recording.add(np.array([time]), state[None], self._lowered.read(self.context))
+        self.recording.add(np.array([time]), state[None], self._lowered.read(self.context, wired=True))
 
 
 class CompiledRecording:

@@ -1,10 +1,14 @@
 """Blocks over all of Drake's scalars."""
 
 import sys
+import threading
 from collections.abc import Callable
 from typing import Any
 
 from pydrake.systems.scalar_conversion import TemplateSystem
+
+CONVERTING = threading.RLock()
+"""Held while Drake instantiates a template or converts a system: neither is safe in several threads at once."""
 
 
 def block_template(name: str, module: str) -> Any:
@@ -29,6 +33,8 @@ def in_double(template: Any) -> Callable[..., Any]:
     """
 
     def block(*arguments: Any, **options: Any) -> Any:
-        return template[float](*arguments, **options)
+        with CONVERTING:
+            instance = template[float]
+        return instance(*arguments, **options)
 
     return block

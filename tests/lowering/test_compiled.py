@@ -1,5 +1,7 @@
 """The compiled diagram computes what the diagram computes."""
 
+import math
+
 import numpy as np
 import pytest
 import strategies
@@ -7,11 +9,24 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from probe import context_at
 from pydrake.systems.analysis import Simulator
-from pydrake.systems.framework import DiagramBuilder, LeafSystem
-from pydrake.systems.primitives import Adder, Gain, Integrator, LinearSystem, PassThrough, Sine, ZeroOrderHold
+from pydrake.systems.framework import DiagramBuilder, LeafSystem, LeafSystem_
+from pydrake.systems.primitives import (
+    Adder,
+    ConstantVectorSource,
+    Gain,
+    Integrator,
+    LinearSystem,
+    Multiplexer,
+    PassThrough,
+    Sine,
+    TrajectorySource,
+    ZeroOrderHold,
+)
+from pydrake.trajectories import PiecewisePolynomial
 
 from drake_formation import build_diagram, load_scenario, set_parameters
 from drake_formation.lowering import LoweringError, lower
+from drake_formation.systems.templates import block_template
 
 EXACT = {"rtol": 1e-12, "atol": 1e-12}
 
@@ -130,23 +145,84 @@ class OnlyDouble(LeafSystem):
         derivatives.SetFromVector([1.0])
 
 
-class Restless(LeafSystem):
-    """Changes its state at every step."""
-
-    def __init__(self):
-        super().__init__()
-        self.DeclareContinuousState(1)
-        self.DeclarePerStepUnrestrictedUpdateEvent(self.jump)
-
-    def jump(self, context, state):
-        state.get_mutable_continuous_state().SetFromVector([0.0])
-
-
-@pytest.mark.parametrize(
-    ("block", "reason"), [(OnlyDouble, "does not convert"), (Restless, "DeclarePerStepUnrestrictedUpdateEvent")]
-)
-def test_what_cannot_be_compiled_is_named(block, reason):
+def test_what_does_not_convert_is_named():
     builder = DiagramBuilder()
-    builder.AddNamedSystem("awkward", block())
-    with pytest.raises(LoweringError, match=f"'awkward'.*{reason}"):
+    builder.AddNamedSystem("awkward", OnlyDouble())
+    with pytest.raises(LoweringError, match=r"'awkward'.*does not convert"):
         lower(builder.Build())
+
+
+@block_template("Lawful_", __name__)
+def Lawful_(T):  # noqa: N802 - Drake's name for a template
+    class Impl(LeafSystem_[T]):
+        def _construct(self, law, *, converter=None):
+            LeafSystem_[T].__init__(self, converter=converter)
+            self.arguments = (law,)
+            self.DeclareContinuousState(1)
+
+        def _construct_copy(self, other, converter=None):
+            Impl._construct(self, *other.arguments, converter=converter)
+
+        def DoCalcTimeDerivatives(self, context, derivatives):  # noqa: N802 - Drake's name
+            (law,) = self.arguments
+            derivatives.SetFromVector([law(context.get_continuous_state_vector())])
+
+    return Impl
+
+
+ADVICE = {
+    "maximum": (lambda x: np.maximum(x.CopyToVector()[0], 0.0), "if_then_else"),
+    "clip": (lambda x: np.clip(x.CopyToVector()[0], 0.0, 1.0), "if_then_else"),
+    "if": (lambda x: 1.0 if x.CopyToVector()[0] > 0 else 0.0, "if_then_else"),
+    "max": (lambda x: max(x.CopyToVector()[0], 0.0), "if_then_else"),
+    "math": (lambda x: math.sin(x.CopyToVector()[0]), "NumPy's"),
+}
+
+
+@pytest.mark.parametrize(("law", "advice"), ADVICE.values(), ids=ADVICE)
+def test_what_symbols_cannot_do_is_told_with_what_to_write_instead(law, advice):
+    builder = DiagramBuilder()
+    builder.AddNamedSystem("lawful", Lawful_[float](law))
+    with pytest.raises(LoweringError, match=f"'lawful'.*does not run in symbols.*{advice}") as refusal:
+        lower(builder.Build())
+    assert "__bool__" not in str(refusal.value)
+
+
+def test_a_trajectory_source_is_told_what_plays_one():
+    builder = DiagramBuilder()
+    curve = PiecewisePolynomial.FirstOrderHold([0.0, 1.0], [[0.0, 1.0]])
+    source, plant = builder.AddNamedSystem("curve", TrajectorySource(curve)), builder.AddSystem(Integrator(1))
+    builder.Connect(source.get_output_port(), plant.get_input_port())
+    with pytest.raises(LoweringError, match=r"'curve'.*TrajectoryReference"):
+        lower(builder.Build())
+
+
+def test_a_fixed_value_on_a_connected_port_is_refused_by_name():
+    """Drake lets it take the connection's place."""
+    builder = DiagramBuilder()
+    wave, plant = builder.AddNamedSystem("wave", Sine(1.0, 2.0, 0.0, 1)), builder.AddNamedSystem("plant", Integrator(1))
+    builder.Connect(wave.get_output_port(0), plant.get_input_port())
+    diagram = builder.Build()
+    compiled, context = lower(diagram), diagram.CreateDefaultContext()
+    list(compiled.integrate(context, 0.5))
+    own = plant.GetMyMutableContextFromRoot(context)
+    plant.get_input_port().FixValue(own, wave.get_output_port(0).Eval(wave.GetMyContextFromRoot(context)))
+    with pytest.raises(LoweringError, match=r"'plant'.*input port 'u0?' is connected, and has a fixed value"):
+        list(compiled.integrate(context, 1.0))
+    with pytest.raises(LoweringError, match="'plant'"):
+        compiled.read(context)
+
+
+def test_ports_of_no_size_are_carried_along():
+    builder = DiagramBuilder()
+    empty = builder.AddNamedSystem("empty", ConstantVectorSource([]))
+    joined = builder.AddNamedSystem("joined", Multiplexer([0, 1]))
+    plant = builder.AddNamedSystem("plant", LinearSystem([[0.0]], [[-1.0]], [[1.0]], [[0.0]]))
+    builder.Connect(empty.get_output_port(), joined.get_input_port(0))
+    builder.Connect(plant.get_output_port(), joined.get_input_port(1))
+    builder.Connect(joined.get_output_port(0), plant.get_input_port())
+    plant.configure_default_state([1.0])
+    diagram = builder.Build()
+    context = diagram.CreateDefaultContext()
+    list(lower(diagram).integrate(context, 1.0, accuracy=1e-10))
+    np.testing.assert_allclose(context.get_continuous_state_vector().CopyToVector(), [np.exp(-1.0)], rtol=1e-8)

@@ -15,6 +15,8 @@ from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.linearization import Array, LinearFormation, linearize
 from drake_formation.analysis.shape import ROUNDING, rotation, spring_stiffness
 from drake_formation.formation.graphs import Edge
+from drake_formation.parts.springs.hookean import Hookean
+from drake_formation.parts.springs.linear import Linear
 from drake_formation.scenario import Scenario, with_overrides
 
 TRANSLATIONS = 2
@@ -81,6 +83,10 @@ def spring_linearization(formation: LinearFormation) -> SpringLinearization:
         IllPosedError: the formation is one robot or has no spring with stiffness.
     """
     scenario = formation.scenario
+    if formation.resolved.law not in (Hookean, Linear):
+        raise IllPosedError(
+            f"the object's springs act by {formation.resolved.law.kind!r}; what is compared are the paper's two laws"
+        )
     stiff = stiff_springs(formation)
     if not stiff:
         raise IllPosedError("the object has no springs with stiffness: give springs.graph edges and springs.stiffness")

@@ -26,6 +26,12 @@ def each(annotation: Any) -> Any:
     return Annotated[branches | listed, Discriminator(_scalar_list_or_mapping)]
 
 
+def for_each(annotation: Any) -> Any:
+    """The type of a field that is given for each robot, as a list or a mapping, and not once for all."""
+    listed = Annotated[tuple[annotation, ...], Field(strict=False), Tag("list")]
+    return Annotated[Annotated[dict[str, annotation], Tag("mapping")] | listed, Discriminator(_scalar_list_or_mapping)]
+
+
 def is_list(annotation: Any) -> bool:
     """Whether a value of a type may be written as a list."""
     if get_origin(annotation) is Annotated:

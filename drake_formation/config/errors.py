@@ -80,9 +80,31 @@ def dotted(path: Path) -> str:
     return ".".join(map(str, path))
 
 
+SYNONYMS = {
+    **dict.fromkeys(("ring", "circle", "loop", "circular"), "cycle"),
+    **dict.fromkeys(("all", "full", "fully_connected", "all_to_all", "mesh", "clique"), "complete"),
+    **dict.fromkeys(("chain", "line", "string"), "path"),
+    **dict.fromkeys(("hub", "wheel", "centralized"), "star"),
+    **dict.fromkeys(("setpoint", "goal", "point"), "set_point"),
+    **dict.fromkeys(("min_jerk", "jerk", "minimum-jerk", "straight"), "minimum_jerk"),
+    **dict.fromkeys(("apf", "field", "plan", "planner"), "potential_field"),
+    **dict.fromkeys(("spline", "way_points", "via_points"), "waypoints"),
+    **dict.fromkeys(("hooke", "spring", "nonlinear"), "hookean"),
+    **dict.fromkeys(("pointmass", "mass", "double_integrator"), "point_mass"),
+    **dict.fromkeys(("wire", "perfect", "none"), "ideal"),
+    **dict.fromkeys(("square", "rectangle", "triangle", "octagon", "hexagon", "circle_shape"), "polygon"),
+}
+"""What people of the field call what has another name here."""
+
+
 def nearest(name: object, names: Iterable[str]) -> str:
-    """The name most like the given one, or an empty string if none is near."""
-    return next(iter(difflib.get_close_matches(name, list(names), n=1)), "") if isinstance(name, str) else ""
+    """The name meant: what the given one is a synonym of, else the one most like it, else an empty string."""
+    if not isinstance(name, str):
+        return ""
+    known = list(names)
+    if SYNONYMS.get(name.lower()) in known:
+        return SYNONYMS[name.lower()]
+    return next(iter(difflib.get_close_matches(name, known, n=1)), "")
 
 
 def shown(value: Any) -> str:

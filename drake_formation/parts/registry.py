@@ -127,12 +127,12 @@ def _load(entry: EntryPoint) -> None:
         for role in ROLES:
             _broken[role].setdefault(entry.name, f"part {entry.name!r} of {distribution} cannot be used: {error}")
         return
-    cls.distribution = distribution
     known = _parts[cls.role].get(cls.kind)
     if known:
         message = f"{cls.role} {cls.kind!r} is in {known.distribution} and in {distribution}; remove one of them"
         _broken[cls.role][cls.kind] = message
         return
+    cls.distribution = distribution
     _parts[cls.role][cls.kind] = cls
 
 

@@ -49,6 +49,8 @@ def locate(loc: Path) -> Place:
     annotation: Any = Scenario
     description = ""
     for part in loc:
+        if part == "[key]":
+            continue  # what pydantic adds where a key of a mapping is wrong
         bare, _ = _unwrapped(annotation)
         if _is_union(bare):
             annotation = _branch(bare, part)

@@ -60,7 +60,7 @@ def plain(value: Any) -> Any:
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     if isinstance(value, Mapping):
-        return {key: plain(item) for key, item in value.items()}
+        return {str(key) if type(key) is int else key: plain(item) for key, item in value.items()}  # a robot's number
     if isinstance(value, list | tuple):
         return [plain(item) for item in value]
     return value

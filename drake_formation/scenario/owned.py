@@ -8,7 +8,7 @@ from pydantic import ValidationError
 from drake_formation.config.each import DEFAULT, Owners
 from drake_formation.config.errors import MESSAGES, Fault, Path, nearest, shown
 from drake_formation.parts.part import Part
-from drake_formation.parts.registry import find
+from drake_formation.parts.registry import PartError, find, kinds
 from drake_formation.parts.roles import ROLES, Role
 from drake_formation.scenario.schema import Scenario
 from drake_formation.scenario.written import takes_lists
@@ -33,10 +33,13 @@ def handed_out(scenario: Scenario, role: str, owners: Owners) -> tuple[tuple[Par
         owners: for whom there is one part each.
     """
     its, written = ROLES[role], section(scenario, role)
-    kinds = getattr(written, its.chooser)
-    if faults := list(owners.faults((*its.section, its.chooser), kinds, listed=False, required=False)):
+    chosen = getattr(written, its.chooser)
+    if faults := list(owners.faults((*its.section, its.chooser), chosen, listed=False, required=False)):
         return (), faults
-    classes = [find(role, owners.value(kinds, i, False, its.default)) for i in range(len(owners.names))]
+    try:
+        classes = [find(role, owners.value(chosen, i, False, its.default)) for i in range(len(owners.names))]
+    except PartError as error:
+        return (), [Fault((*its.section, its.chooser), str(error))]
     if faults := list(_field_faults(its, written, set(classes), owners)):
         return (), faults
     given = {cls: _given(written, cls) for cls in set(classes)}
@@ -68,13 +71,13 @@ def path_of(scenario: Scenario, role: str, owner: int, path: Path) -> Path:
         else:
             result.append(key)
     kind = getattr(section(scenario, role), ROLES[role].chooser)
-    if len(path) == 1 and isinstance(kind, str) and path[0] in find(role, kind).Config.model_fields:
+    if len(path) == 1 and isinstance(kind, str) and path[0] in kinds(role)[kind].Config.model_fields:
         field = str(path[0])
         value = getattr(section(scenario, role), field)
         if isinstance(value, dict):
             name = str(owner + 1)
             result.append(name if name in value else DEFAULT)
-        elif isinstance(value, tuple) and not takes_lists(find(role, kind), field):
+        elif isinstance(value, tuple) and not takes_lists(kinds(role)[kind], field):
             result.append(owner)
     return tuple(result)
 

@@ -10,7 +10,7 @@ from drake_formation.config.errors import Fault
 from drake_formation.formation.formation import Formation
 from drake_formation.formation.links import Channels, Edges
 from drake_formation.parts.part import Part
-from drake_formation.parts.registry import find
+from drake_formation.parts.registry import kinds
 from drake_formation.parts.roles import ROLES
 from drake_formation.scenario import derive
 from drake_formation.scenario.checks import geometry, graphs, simulator
@@ -92,7 +92,7 @@ def _parts(scenario: Scenario, owners: dict[str, Owners]) -> tuple[dict[str, tup
         parts[name], wrong = handed_out(scenario, name, its)
         if wrong:
             faults += wrong
-            default = find(name, role.default)
+            default = kinds(name)[role.default]
             parts[name] = (default(default.Config()),) * len(its.names)
     return parts, faults
 
@@ -117,7 +117,7 @@ def _formation(
         begin=scenario.simulator.start_time,
         aggregation_duration=scenario.aggregation.duration,
         transport_duration=scenario.transport.duration,
-        law=find("spring", scenario.springs.law),
+        law=kinds("spring")[scenario.springs.law],
         parts=parts,
     )
 

@@ -11,7 +11,7 @@ from pydantic import Discriminator, Field, Tag
 
 from drake_formation.config.values import Edge, Graph, Length, NonNegative, Point, Positive, Section, TopologyName
 from drake_formation.parts.registry import when_changed
-from drake_formation.scenario.written import PartOf
+from drake_formation.scenario.written import PartOf, rebuild_sections
 
 MOST_ROBOTS = 1000
 """A complete graph among more robots has a million channels and more."""
@@ -236,7 +236,9 @@ class Scenario(Section):
 
 def _follow_parts() -> None:
     """Make the sections anew, over the parts that there are now."""
-    for section in (Consensus, Transport, Scenario):
+    Consensus.model_rebuild(force=True)
+    rebuild_sections()
+    for section in (Transport, Scenario):
         section.model_rebuild(force=True)
 
 

@@ -167,6 +167,8 @@ class _Builder:
         for key_node, value_node in node.value:
             line = _line(key_node)
             key = self._scalar(key_node, path, line) if isinstance(key_node, ScalarNode) else []
+            if isinstance(key, int) and not isinstance(key, bool):
+                key = str(key)  # the number of a robot
             if not isinstance(key, str):
                 self._fault(path, "a key that is not text", line, shown(key) if key != [] else "")
             elif key in data:

@@ -6,6 +6,8 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from drake_formation.config.errors import MESSAGES, Fault, nearest, shown
+from drake_formation.parts.registry import broken, kinds
+from drake_formation.parts.roles import ROLES
 from drake_formation.scenario.fields import Place, chooser, locate, names
 from drake_formation.scenario.resolve import check
 from drake_formation.scenario.schema import Scenario
@@ -60,4 +62,14 @@ def _choice(place: Place, value: dict[str, Any]) -> Fault:
     path, allowed = (*place.path, key), ", ".join(choices)
     if key not in value:
         return Fault(path, "missing", allowed=allowed)
-    return Fault(path, "unknown name", shown(value[key]), allowed, nearest(value[key], choices))
+    return Fault(path, _unknown(value[key]), shown(value[key]), allowed, nearest(value[key], choices))
+
+
+def _unknown(name: Any) -> str:
+    """Why a kind is none here: perhaps it is one of another role, or its package is broken."""
+    for role in ROLES if isinstance(name, str) else ():
+        if name in kinds(role):
+            return f"a kind of {role}, not of this"
+        if name in broken(role):
+            return broken(role)[name]
+    return "unknown name"

@@ -8,10 +8,10 @@ from pydantic import Field, GetCoreSchemaHandler, create_model, model_serializer
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
-from drake_formation.config.each import each, is_list
+from drake_formation.config.each import each, for_each, is_list
 from drake_formation.config.values import Section
 from drake_formation.parts.part import Part
-from drake_formation.parts.registry import find, kinds
+from drake_formation.parts.registry import kinds
 from drake_formation.parts.roles import ROLES, Role
 
 MIXED = "mixed"
@@ -39,7 +39,7 @@ class PartOf:
         """The section as it is written, by kind."""
         parts: dict[str, Any] = dict(kinds(self.role.name))
         models: dict[str, type[Section]] = {kind: written(part, self.shared) for kind, part in parts.items()}
-        if self.may_differ and len(models) > 1:
+        if self.may_differ:
             models[MIXED] = mixed(self.role.name, self.shared, tuple(parts.values()))
         return models
 
@@ -56,15 +56,16 @@ class PartOf:
     def chosen(self, value: Any) -> Any:
         """The branch that a value takes."""
         chooser = self.role.chooser
-        if not isinstance(value, Mapping):
-            return getattr(value, chooser, self.role.default)
-        kind = value.get(chooser, None if self.kind_required else self.role.default)
+        if isinstance(value, Mapping):
+            kind = value.get(chooser, None if self.kind_required else self.role.default)
+        else:
+            kind = getattr(value, chooser, self.role.default)
         return MIXED if self.may_differ and isinstance(kind, Mapping | list | tuple) else kind
 
     def default(self) -> Any:
         """The section where a scenario leaves it out."""
         kind = self.role.default
-        part: Any = find(self.role.name, kind)
+        part: Any = kinds(self.role.name)[kind]
         return written(part, self.shared).model_validate({self.role.chooser: kind})
 
 
@@ -78,19 +79,20 @@ def written(part: Any, shared: Any) -> type[Section]:
     fields |= {name: (_own(info), _field(info)) for name, info in shared.model_fields.items()}
     fields |= {name: (_annotation(info, role), _field(info)) for name, info in part.Config.model_fields.items()}
     section: type[Section] = create_model(name, __base__=Section, __doc__=part.__doc__, **fields)
+    _made.append(section)
     return section
 
 
 @functools.cache
 def mixed(role: str, shared: Any, parts: tuple[Any, ...]) -> type[Section]:
     """The section where robots have parts of different kinds: all their fields, checked robot by robot."""
-    names = {kind: Literal[tuple(part.kind for part in parts)] for kind in ("kind",)}
+    names: Any = Literal.__getitem__(tuple(part.kind for part in parts))
     known = {
         name: (Any, Field(default=None, description=info.description))
         for part in parts
         for name, info in part.Config.model_fields.items()
     }
-    kind = (each(names["kind"]), Field(description=f"kind of {role}, a list or a mapping: one a robot"))
+    kind = (for_each(names), Field(description=f"kind of {role}, a list or a mapping: one a robot"))
 
     class Mixed(shared):  # type: ignore[misc]
         @model_serializer(mode="wrap")
@@ -103,6 +105,15 @@ def mixed(role: str, shared: Any, parts: tuple[Any, ...]) -> type[Section]:
         f"Mixed{role.capitalize()}", __base__=Mixed, __doc__="Parts of different kinds.", **fields
     )
     return section
+
+
+_made: list[type[Section]] = []
+
+
+def rebuild_sections() -> None:
+    """Let the sections made hold such others as follow the parts there are now."""
+    for section in _made:
+        section.model_rebuild(force=True)
 
 
 def takes_lists(part: type[Part], field: str) -> bool:

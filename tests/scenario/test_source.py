@@ -62,7 +62,7 @@ def test_all_duplicate_keys_are_reported_with_both_lines():
         ("", "f.yaml: empty; allowed: a scenario (a YAML mapping)"),
         ("# only a comment\n", "f.yaml: empty; allowed: a scenario (a YAML mapping)"),
         ("- a\n", "f.yaml:1: not a mapping (got [a]); allowed: a scenario (a YAML mapping)"),
-        ("1: a\n", "f.yaml:1: a key that is not text (got 1)"),
+        ("1.5: a\n", "f.yaml:1: a key that is not text (got 1.5)"),
         ("a: 1\n[b]: 2\n", "f.yaml:2: a key that is not text"),
         ("a:\n  b: !!python/object:os.system x\n", "f.yaml:2: a.b: tag tag:yaml.org,2002:python/object:os.system"),
         ("a: !mine {b: 1}\n", "f.yaml:1: a: tag !mine is not allowed"),

@@ -5,7 +5,7 @@ from typing import Any
 
 from drake_formation.config.errors import Fault, Path, shortened, shown
 from drake_formation.formation.graphs import Edge, edges
-from drake_formation.parts.registry import find
+from drake_formation.parts.registry import kinds
 from drake_formation.scenario import derive
 from drake_formation.scenario.schema import Scenario
 
@@ -20,7 +20,7 @@ def _springs(scenario: Scenario) -> Iterator[Fault]:
     springs = scenario.springs
     faults = list(_edges(("springs", "graph"), springs.graph, derive.robot_count(scenario.formation)))
     yield from faults
-    fields = find("spring", springs.law).Config.model_fields
+    fields = kinds("spring")[springs.law].Config.model_fields
     lists = [name for name in fields if isinstance(getattr(springs, name), tuple)]
     if faults or not lists or isinstance(springs.graph, str):
         return

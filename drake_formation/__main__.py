@@ -1,5 +1,15 @@
-"""``python -m drake_formation``: the command line."""
+"""``python -m drake_formation``, and the command ``drake-formation``."""
 
-from drake_formation.cli import main
+from drake_formation.terminal import orderly
 
-main()
+
+def main() -> None:
+    """The command line, in good order from the first import on."""
+    with orderly():
+        from drake_formation import cli
+
+        cli.main()
+
+
+if __name__ == "__main__":
+    main()

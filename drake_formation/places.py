@@ -169,9 +169,28 @@ def reserved(folder: Path, kind: Kind) -> Iterator[Place]:
     finally:
         if place:
             place.discard()
-        for parent in reversed(made):
-            with suppress(OSError):
-                parent.rmdir()
+        _remove(made)
+
+
+def make_folder(folder: Path, kind: Kind) -> None:
+    """Make a folder in which a result grows, such as a sweep's; where that fails, nothing remains of it.
+
+    Args:
+        folder: new, empty, or with an earlier part of the result.
+        kind: of the result.
+
+    Raises:
+        OutputError: it cannot be used, or holds something else.
+    """
+    made: list[Path] = []
+    try:
+        with explained(folder):
+            _require_free(folder, kind)
+            _make(folder, made)
+            Place(folder, kind).discard()
+    except BaseException:
+        _remove(made)
+        raise
 
 
 @contextmanager
@@ -254,6 +273,13 @@ def _make(folder: Path, made: list[Path]) -> None:
         _make(folder.parent, made)
     folder.mkdir(exist_ok=True)
     made.append(folder)
+
+
+def _remove(made: list[Path]) -> None:
+    """Remove folders that were made, as far as they are empty."""
+    for folder in reversed(made):
+        with suppress(OSError):
+            folder.rmdir()
 
 
 def _probe(folder: Path) -> None:

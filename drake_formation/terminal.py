@@ -8,7 +8,7 @@ import os
 import signal
 import sys
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -83,25 +83,51 @@ def orderly() -> Iterator[None]:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="transliterate")
+    asked: list[Stopped] = []
+
+    def on_signal(number: int, _frame: FrameType | None) -> NoReturn:
+        signal.signal(number, signal.SIG_DFL)
+        asked.append(Stopped(_SIGNALS[signal.Signals(number).name], 128 + number))
+        raise asked[0]
+
+    try:
+        with _handled(on_signal):
+            yield
+    except KeyboardInterrupt:
+        stop(_SIGNALS["SIGINT"], INTERRUPTED)
+    except BaseException as error:
+        # On its way through C++ it may have become another exception.
+        if isinstance(error, Stopped):
+            asked.append(error)
+        if asked and not isinstance(error, SystemExit):
+            stop(asked[0].message, asked[0].status)
+        raise
+
+
+@contextmanager
+def leaving_at_once() -> Iterator[None]:
+    """Signals that end the process on the spot, while there is nothing to clean up: imports lose exceptions."""
+
+    def on_signal(number: int, _frame: FrameType | None) -> NoReturn:
+        os.write(2, f"{_SIGNALS[signal.Signals(number).name]}\n".encode())
+        os._exit(128 + number)
+
+    with _handled(on_signal):
+        yield
+
+
+@contextmanager
+def _handled(handler: Callable[[int, FrameType | None], NoReturn]) -> Iterator[None]:
     former = {}
     for name in _SIGNALS:
         number = getattr(signal, name)
-        if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):  # nohup has it ignored
-            former[number] = signal.signal(number, _on_signal)
+        if signal.getsignal(number) is not signal.SIG_IGN:  # as nohup has it
+            former[number] = signal.signal(number, handler)
     try:
         yield
-    except Stopped as reason:
-        stop(reason.message, reason.status)
-    except KeyboardInterrupt:
-        stop(_SIGNALS["SIGINT"], INTERRUPTED)
     finally:
-        for number, handler in former.items():
-            signal.signal(number, handler)
-
-
-def _on_signal(number: int, _frame: FrameType | None) -> NoReturn:
-    signal.signal(number, signal.SIG_DFL)
-    raise Stopped(_SIGNALS[signal.Signals(number).name], 128 + number)
+        for number, earlier in former.items():
+            signal.signal(number, earlier)
 
 
 def _open_streams() -> None:

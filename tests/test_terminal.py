@@ -17,7 +17,6 @@ PRINTED = {
     "m²": "m^2",
     "N·s": "N.s",
     "1 × 2": "1 x 2",
-    "├ü┤": "|u|",
     "日": "\\u65e5",
     "\udcff": "\\udcff",
     "\N{GREEK SMALL LETTER ALPHA WITH TONOS}": "alpha",
@@ -40,7 +39,7 @@ def test_what_an_encoding_has_stays_as_it_is():
     assert "m² à δ".encode("latin-1", "transliterate") == "m² à delta".encode("latin-1")
 
 
-@given(st.text(string.printable + "δ[]:/"))
+@given(st.text(string.ascii_letters + string.punctuation + " δ"))
 def test_tables_take_texts_as_they_are(text):
     assert console().render_str(text).plain == text
 

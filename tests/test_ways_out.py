@@ -13,7 +13,6 @@ import pytest
 
 SHORT = ["--set", "aggregation.duration=0.2", "--set", "transport.duration=0.3"]
 RUN = ["run", "line", *SHORT]
-LONG = ["run", "line", "--set", "transport.duration=1e5", "--set", "simulator.max_step_size=1e-3"]
 SWEEP = """
 name: small
 scenario: line
@@ -57,22 +56,23 @@ def test_what_a_terminal_cannot_show_is_spelt_out(command, tmp_path, locale):
     rows = [line for line in out.splitlines() if line.startswith("|")]
     assert len(rows) > 8
     assert len(set(map(len, rows))) == 1
-    status, out, _ = command("analyze", "line", **LOCALES[locale])
+
+
+@pytest.mark.parametrize("locale", ["ascii, strictly", "C"])
+def test_files_are_utf8_in_any_locale(command, tmp_path, locale):
+    assert command(*RUN, "--out", "o", **LOCALES[locale])[0] == 0
+    status, out, _ = command("analyze", "line", "--out", "certificate", **LOCALES[locale])
     assert status == 0
     assert "delta" in out
-    assert command(*RUN, "--out", "o", **LOCALES[locale])[0] == 0
-    for name in ("metrics.json", "scenario.yaml", "diagram.svg"):
-        (tmp_path / "o" / name).read_text(encoding="utf-8")
-    status, _, err = command("validate", "line", "--set", "δ=1", **LOCALES[locale])
-    assert status == 2
-    assert "unknown key" in err
+    for name in ("o/metrics.json", "o/scenario.yaml", "o/diagram.svg", "certificate/certificate.json"):
+        (tmp_path / name).read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("arguments", [["schema"], ["scenarios"], ["validate", "line"], ["analyze", "line"], RUN])
+@pytest.mark.parametrize("arguments", [["schema"], ["validate", "line"], RUN])
 def test_a_reader_that_leaves_is_no_fault(command, arguments):
     status, _, err = command(*arguments, shell="| true; exit ${PIPESTATUS[0]}")
     assert status in (0, 141)
-    assert not err
+    assert not err.strip()
 
 
 def test_a_closed_or_full_standard_output_costs_nothing(command, tmp_path):
@@ -84,38 +84,43 @@ def test_a_closed_or_full_standard_output_costs_nothing(command, tmp_path):
     assert all((tmp_path / name / "metrics.json").exists() for name in ("closed", "all", "full"))
 
 
-@pytest.mark.parametrize("setting", [{"COLUMNS": "1"}, {"TERM": "dumb"}, {"NO_COLOR": "1"}, {"FORCE_COLOR": "1"}])
+@pytest.mark.parametrize("setting", [{"COLUMNS": "1"}, {"TERM": "dumb", "FORCE_COLOR": "1"}])
 def test_any_terminal_will_do(command, setting):
     assert command("validate", "line", **setting)[0] == 0
 
 
-def commands(tmp_path):
-    (tmp_path / "small.yaml").write_text(SWEEP)
-    return {
-        "run": [*LONG, "--out", "o"],
-        "sweep": ["sweep", "gains", "--out", "o", "--workers", "1"],
-        "analyze": ["analyze", "octagon", "--out", "o"],
-        "reproduce": ["reproduce", "--out", "o"],
-    }
+COMMANDS = {
+    "run": ["run", "line", "--set", "transport.duration=1e5", "--set", "simulator.max_step_size=1e-3", "--out", "o"],
+    "sweep": ["sweep", "gains", "--out", "o", "--workers", "1"],
+    "analyze": ["analyze", "octagon", "--out", "o"],
+}
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("kind", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
-@pytest.mark.parametrize("name", ["run", "sweep", "analyze"])
-@pytest.mark.parametrize("delay", [0.5, 3.0])
-def test_a_signal_ends_a_command_in_good_order(tmp_path, name, kind, status, delay):
+@pytest.mark.parametrize(
+    ("name", "kind", "delay"),
+    [
+        ("run", signal.SIGINT, 0.6),
+        ("run", signal.SIGINT, 3.0),
+        ("run", signal.SIGTERM, 4.0),
+        ("run", signal.SIGHUP, 3.0),
+        ("sweep", signal.SIGINT, 4.0),
+        ("sweep", signal.SIGTERM, 4.0),
+        ("analyze", signal.SIGTERM, 2.0),
+    ],
+)
+def test_a_signal_ends_a_command_in_good_order(tmp_path, name, kind, delay):
     process = subprocess.Popen(
-        [sys.executable, "-m", "drake_formation", *commands(tmp_path)[name]],
+        [sys.executable, "-m", "drake_formation", *COMMANDS[name]],
         cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, process_group=0,
     )  # fmt: skip
     time.sleep(delay)
     os.killpg(process.pid, kind)  # as a terminal does
     out, err = process.communicate(timeout=60)
-    assert process.returncode == status
+    assert process.returncode == 128 + kind
     assert "Traceback" not in out + err
-    assert err.startswith(("interrupted", "terminated"))
-    left = {path.name for path in tmp_path.iterdir()} - {"small.yaml"}
-    assert left <= ({"o"} if name == "sweep" else set())
+    assert err.strip().startswith(("interrupted", "terminated"))
+    assert {path.name for path in tmp_path.iterdir()} <= ({"o"} if name == "sweep" else set())
 
 
 def test_a_record_goes_elsewhere_if_its_name_is_taken(command, tmp_path):
@@ -134,11 +139,13 @@ def test_a_record_goes_elsewhere_if_its_name_is_taken(command, tmp_path):
     assert [path.name for path in (tmp_path / "o.failed").iterdir()] == ["thesis.tex"]
 
 
+OUTS = ["", "file", "a" * 300, "loop", "dangling", "file/run", "/dev/null", "/", "a\nb/" + "c" * 300]
+ELSE = [["analyze", "line"], ["reproduce", "--only", "table1"], ["sweep", "small.yaml"]]
+
+
 @pytest.mark.parametrize(
-    "arguments", [RUN, ["analyze", "line"], ["reproduce", "--only", "table1"], ["sweep", "small.yaml"]]
-)
-@pytest.mark.parametrize(
-    "out", ["", "file", "a" * 300, "loop", "dangling", "file/run", "/dev/null", "/", "a\nb/" + "c" * 300]
+    ("arguments", "out"),
+    [*((RUN, out) for out in OUTS), *((other, out) for other in ELSE for out in (OUTS[2], OUTS[-1]))],
 )
 def test_a_place_that_will_not_do_is_refused(command, tmp_path, arguments, out):
     (tmp_path / "file").touch()
@@ -187,9 +194,7 @@ def test_results_are_readable_as_the_users_mask_says(command, tmp_path):
     assert stat.S_IMODE((tmp_path / "o").stat().st_mode) == 0o777 & ~mask
 
 
-@pytest.mark.parametrize(
-    "source", ["/dev/zero", "/dev/urandom", "pipe", ".", "large", "bomb", "deep", "\x00"[:0], "a" * 300]
-)
+@pytest.mark.parametrize("source", ["/dev/zero", "pipe", "large", "bomb", "deep", "", "a" * 300])
 @pytest.mark.parametrize("arguments", [["validate"], ["sweep", "--out", "o"]])
 def test_what_is_no_scenario_is_refused_at_once(command, tmp_path, source, arguments):
     os.mkfifo(tmp_path / "pipe")

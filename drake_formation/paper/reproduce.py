@@ -7,7 +7,7 @@ from drake_formation.output import Written, written
 from drake_formation.paper.report import REPORT, RUNS, write_report
 from drake_formation.paper.store import Store
 from drake_formation.paper.study import PARTS
-from drake_formation.places import explained, reserved
+from drake_formation.places import make_folder, reserved
 from drake_formation.scenario import Scenario
 from drake_formation.scenario.errors import nearest
 
@@ -34,10 +34,8 @@ def reproduce(folder: Path, only: Sequence[str] = (), progress: Progress | None 
         if name not in PARTS:
             raise ValueError(f"no part {name!r} of the study{_hint(name)}; there are {', '.join(PARTS)}")
     parts = [part for name, part in PARTS.items() if not only or name in only]
-    with reserved(folder, REPORT):
-        pass
-    with explained(folder):
-        store = Store(folder / RUNS)  # kept whatever happens to the report
+    make_folder(folder, REPORT)
+    store = Store(folder / RUNS)  # kept whatever happens to the report
     with reserved(folder, REPORT) as place:
         _run(store, [scenario for part in parts for scenario in part.runs()], progress)
         sections = [part.make(store) for part in parts]

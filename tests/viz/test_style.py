@@ -34,7 +34,7 @@ def test_no_setting_of_a_user_changes_a_figure(tmp_path, setting):
     draw(figure, tmp_path / "plain.png")
     with mpl.rc_context({setting: ODD[setting]}):
         draw(figure, tmp_path / "odd.png")
-        assert mpl.rcParams[setting] == ODD[setting]
+        assert mpl.rcParams[setting] != mpl.rcParamsDefault[setting]
     assert (tmp_path / "odd.png").read_bytes() == (tmp_path / "plain.png").read_bytes()
 
 

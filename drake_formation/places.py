@@ -265,14 +265,12 @@ def _require_nameable(path: Path) -> None:
 
 def _make(folder: Path, made: list[Path]) -> None:
     """Make a folder and those around it; those that were made are noted as they are."""
-    if folder.is_dir():
-        return
-    if folder.exists():
-        raise NotADirectoryError(errno.ENOTDIR, f"{folder} is a file")
-    if folder.parent != folder:
-        _make(folder.parent, made)
-    folder.mkdir(exist_ok=True)
-    made.append(folder)
+    missing = list(itertools.takewhile(lambda path: not path.is_dir(), [folder, *folder.parents]))
+    for path in reversed(missing):
+        if path.exists():
+            raise NotADirectoryError(errno.ENOTDIR, f"{path} is a file")
+        path.mkdir(exist_ok=True)
+        made.append(path)
 
 
 def _remove(made: list[Path]) -> None:

@@ -93,6 +93,13 @@ def test_an_empty_folder_is_filled_by_whatever_name(tmp_path, monkeypatch, name)
     assert names(Path(name)) == ["result"]
 
 
+def test_however_deep_a_new_folder_is_nothing_remains_of_it(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with reserved(Path("a/" * 1500), RUN):
+        assert names(tmp_path) == ["a"]
+    assert names(tmp_path) == []
+
+
 @pytest.mark.parametrize("name", REFUSED)
 def test_a_place_that_will_not_do_is_refused_before_the_work(tmp_path, monkeypatch, name):
     monkeypatch.chdir(tmp_path)

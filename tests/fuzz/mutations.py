@@ -203,7 +203,8 @@ def _scale(rng: random.Random, data: Any, path: Path) -> None:
     around = _around(data, path)
     value = around[path[-1]]
     if isinstance(value, int | float) and not isinstance(value, bool):
-        around[path[-1]] = value * rng.choice([-1, 1e-12, 1e-3, 3, 1e3, 1e12]) if "duration" not in path else 1e-9
+        scaled = value * rng.choice([-1, 1e-12, 1e-3, 3, 1e3, 1e12]) if "duration" not in path else 1e-9
+        around[path[-1]] = int(scaled) if isinstance(value, int) else scaled
     else:
         around[path[-1]] = _odd(rng)
 

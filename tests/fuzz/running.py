@@ -5,9 +5,12 @@ import re
 import resource
 import select
 import signal
+import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -44,8 +47,7 @@ class Outcome:
 
 def carry_out(case: Case, time_limit: float = TIME_LIMIT) -> Outcome:
     """Run a case in a folder of its own."""
-    with tempfile.TemporaryDirectory(prefix="fuzz-", ignore_cleanup_errors=True) as name:
-        folder = Path(name)
+    with _temporary_folder() as folder:
         for file, text in case.files.items():
             (folder / file).write_bytes(text.encode("utf-8", "surrogatepass"))
         here = folder / "here"
@@ -58,6 +60,16 @@ def carry_out(case: Case, time_limit: float = TIME_LIMIT) -> Outcome:
         status = _wait(pid, time_limit)
         text = output.read_text(encoding="utf-8", errors="replace") if output.exists() else ""
     return Outcome(_verdict(status, text), status if status is not None else -9, text)
+
+
+@contextmanager
+def _temporary_folder() -> Iterator[Path]:
+    """As tempfile's, however deep the folders in it are."""
+    folder = tempfile.mkdtemp(prefix="fuzz-")
+    try:
+        yield Path(folder)
+    finally:
+        subprocess.run(["rm", "-rf", folder], check=False)
 
 
 def _furnish(here: Path) -> None:

@@ -8,11 +8,12 @@ BENCH ?= .venv-bench
 # pip installs from outside, so that the environment needs no pip of its own (Debian ships venv without it).
 PIP := $(PYTHON) -m pip --python $(BIN)/python --disable-pip-version-check
 
-.PHONY: help demo test check lint types notebooks diagrams reproduce bench clean
+.PHONY: help demo test fuzz check lint types notebooks diagrams reproduce bench clean
 
 help:
 	@echo "make demo       run the paper's line formation and say where the pictures are"
 	@echo "make test       run the whole test suite"
+	@echo "make fuzz       try mutated commands, and count what came of them; MINUTES=10 SEED=7 for others"
 	@echo "make check      lint, types and tests"
 	@echo "make diagrams   export the pictures in diagrams/ anew"
 	@echo "make reproduce  rerun the paper's study into out/paper"
@@ -24,6 +25,11 @@ demo: $(VENV)/installed
 
 test: $(VENV)/installed-dev
 	$(BIN)/python -m pytest --numprocesses auto --dist loadfile $(PYTEST)
+
+# Mutated commands, new ones with each seed: make fuzz MINUTES=10 SEED=7. Without MINUTES, a fixed number of them.
+SEED ?= 1
+fuzz: $(VENV)/installed-dev
+	cd tests && $(abspath $(BIN))/python -m fuzz --seed $(SEED) $(if $(MINUTES),--minutes $(MINUTES),--count 150)
 
 check: lint types test
 

@@ -9,11 +9,16 @@ Load a scenario, build its diagram, simulate it::
     result = simulate(scenario)  # a labelled xarray Dataset
 """
 
-from drake_formation.diagram import build_diagram
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from drake_formation.metrics import Metrics, metrics
-from drake_formation.parameters import set_parameters
-from drake_formation.scenario import Scenario, ScenarioError, load_scenario, with_overrides
-from drake_formation.simulation import SimulationError, simulate
+
+if TYPE_CHECKING:
+    from drake_formation.diagram import build_diagram
+    from drake_formation.parameters import set_parameters
+    from drake_formation.scenario import Scenario, ScenarioError, load_scenario, with_overrides
+    from drake_formation.simulation import SimulationError, simulate
 
 __all__ = [
     "Metrics",
@@ -27,3 +32,21 @@ __all__ = [
     "simulate",
     "with_overrides",
 ]
+
+_HOMES = {
+    "build_diagram": "diagram",
+    "set_parameters": "parameters",
+    **dict.fromkeys(["Scenario", "ScenarioError", "load_scenario", "with_overrides"], "scenario"),
+    **dict.fromkeys(["SimulationError", "simulate"], "simulation"),
+}
+
+
+def __getattr__(name: str) -> Any:
+    """What is slow to import (Drake is) is imported where it is first asked for."""
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

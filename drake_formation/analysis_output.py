@@ -1,53 +1,45 @@
-"""The folder a certificate leaves behind: written beside its place, and moved there when complete."""
+"""The folder that a certificate leaves behind."""
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from drake_formation.analysis.certificate import Certificate
-from drake_formation.analysis.errors import UNSOLVABLE, IllPosedError
-from drake_formation.output import SCENARIO, moved_into_place
+from drake_formation.analysis.errors import IllPosedError
+from drake_formation.output import PICTURES, SCENARIO, Written, written
+from drake_formation.places import Kind, Place
 from drake_formation.scenario import to_yaml
+from drake_formation.viz.style import draw_each
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-CERTIFICATE = "certificate.json"
+CERTIFICATE_FILE = "certificate.json"
+CERTIFICATE = Kind(CERTIFICATE_FILE, (SCENARIO, PICTURES, CERTIFICATE_FILE))
 
 FEW_ROBOTS = 8
 """With more robots, error against channels is drawn only where the fewest channels are asked for."""
 
 
-def write_certificate(folder: Path, certificate: Certificate) -> dict[str, str]:
+def write_certificate(place: Place, certificate: Certificate) -> Written:
     """Write a certificate, its scenario and its figures.
 
     Args:
-        folder: where; an earlier certificate there is replaced as a whole.
+        place: where.
         certificate: from :func:`drake_formation.analysis.certify`.
 
-    Returns:
-        Figures that were left out, by name, and why.
-
     Raises:
-        OutputError: it cannot be written there.
+        OutputError: it cannot be written anywhere.
     """
-    with moved_into_place(folder, mark=CERTIFICATE) as partial:
-        (partial / CERTIFICATE).write_text(certificate.to_json(), encoding="utf-8")
-        (partial / SCENARIO).write_text(to_yaml(certificate.scenario), encoding="utf-8")
-        (partial / "figures").mkdir()
-        left_out = {}
-        for name, draw in FIGURES.items():
-            try:
-                draw(certificate).savefig(partial / "figures" / f"{name}.png", dpi=150)
-            except (IllPosedError, *UNSOLVABLE) as reason:
-                left_out[name] = str(reason)
-        return left_out
 
+    def write(folder: Path) -> dict[str, str]:
+        (folder / CERTIFICATE_FILE).write_text(certificate.to_json(), encoding="utf-8")
+        (folder / SCENARIO).write_text(to_yaml(certificate.scenario), encoding="utf-8")
+        (folder / PICTURES).mkdir()
+        return draw_each({name: partial(draw, certificate) for name, draw in FIGURES.items()}, folder / PICTURES)
 
-def closing(folder: Path, left_out: dict[str, str]) -> str:
-    """Where a certificate is, and which figures it is without."""
-    lines = [f"No figure {figure}: {reason}." for figure, reason in left_out.items()]
-    return "\n".join([*lines, f"Certificate in {folder}, figures in {folder / 'figures'}."])
+    return written(place, write)
 
 
 def _mode_map(certificate: Certificate) -> "Figure":

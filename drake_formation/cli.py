@@ -1,10 +1,11 @@
 """The command line: ``drake-formation run | sweep | analyze | validate | graphviz | reproduce | schema | …``."""
 
 import json
-import sys
+import os
+from contextlib import nullcontext
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
@@ -20,12 +21,10 @@ from drake_formation.scenario import (
     resolve,
     shipped_scenarios,
 )
+from drake_formation.terminal import FAILED_RUN, INTERRUPTED, WRONG_INPUT, Stopped, orderly, say, stop
 
 if TYPE_CHECKING:
     import xarray as xr
-
-WRONG_INPUT, FAILED_RUN, INTERRUPTED = 2, 3, 130
-"""Exit statuses beside 0."""
 
 app = typer.Typer(
     help="Cooperative transport by hierarchical decentralized LQR, as a Drake block diagram.",
@@ -38,7 +37,13 @@ Source = Annotated[str, typer.Argument(metavar="SCENARIO", help="A scenario file
 Overrides = Annotated[
     list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Replace a field, e.g. springs.stiffness=3e4.")
 ]
-console = Console()
+
+
+def _path(text: str) -> Path:
+    """A path as given; an empty one is a slip (a variable without a value, say) and not the current folder."""
+    if not text:
+        raise typer.BadParameter("an empty name")
+    return Path(text)
 
 
 class EngineName(StrEnum):
@@ -64,47 +69,54 @@ class ExecutorName(StrEnum):
 
 def main() -> None:
     """Entry point of the command; turns what a user can do wrong into a message and an exit status."""
+    # Figures are files in this project's style: neither a window nor a user's settings of Matplotlib are asked for.
+    os.environ |= {"MPLBACKEND": "agg", "MATPLOTLIBRC": os.devnull}
     try:
-        app()
+        with orderly():
+            app()
     except ScenarioError as error:
-        _stop(str(error), WRONG_INPUT)
-    except KeyboardInterrupt:
-        _stop("interrupted", INTERRUPTED)
+        stop(str(error), WRONG_INPUT)
 
 
 @app.command()
 def run(
     scenario: Source,
     overrides: Overrides = None,
-    out: Annotated[Path | None, typer.Option(help="Folder for the results; out/NAME if not given.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(parser=_path, metavar="FOLDER", help="For the results; out/NAME if not given.")
+    ] = None,
     engine: Engine = EngineName.BLOCKS,
 ) -> None:
     """Run a scenario and write its metrics, result, diagram and figures."""
     from drake_formation.lowering.errors import LoweringError
     from drake_formation.metrics import metrics
-    from drake_formation.output import OutputError, require_place, write_failed_run, write_run
+    from drake_formation.output import PICTURES, RUN, write_failed_run, write_run
+    from drake_formation.places import OutputError, reserved
     from drake_formation.simulation import SimulationError
 
     resolved = load_scenario(scenario, overrides=overrides)
-    folder = out or Path("out") / resolved.name
     try:
-        require_place(folder)
-        result = _simulate_with_progress(resolved, engine)
-        figures = metrics(result)
-        write_run(folder, resolved, result, figures)
-    except SimulationError as error:
-        kept = write_failed_run(folder, resolved, error.partial, str(error))
-        _stop(f"{error}\nWhat was recorded until then is in {kept}.", FAILED_RUN)
+        with reserved(out or Path("out") / resolved.name, RUN) as place:
+            try:
+                result = _simulate_with_progress(resolved, engine)
+                figures = metrics(result)
+            except SimulationError as error:
+                kept = write_failed_run(place, resolved, error.partial, str(error))
+                recorded = f"What was recorded until then is in {kept.folder}."
+                stop("\n".join([str(error), *kept.remarks(), recorded]), FAILED_RUN)
+            written = write_run(place, resolved, result, figures)
     except (OutputError, LoweringError) as error:
-        _stop(str(error), WRONG_INPUT)
-    console.print(_summary(resolved, figures.to_dict()))
-    console.print(f"Results in {folder}, pictures in {folder / 'figures'}.", soft_wrap=True)
+        stop(str(error), WRONG_INPUT)
+    say(_summary(resolved, figures.to_dict()))
+    say("\n".join([*written.remarks(), f"Results in {written.folder}, pictures in {written.folder / PICTURES}."]))
 
 
 @app.command()
 def sweep(
     source: Annotated[str, typer.Argument(metavar="SWEEP", help="A sweep file, or the name of a shipped one.")],
-    out: Annotated[Path, typer.Option(help="Folder for the runs, the dataset and its figures.")],
+    out: Annotated[
+        Path, typer.Option(parser=_path, metavar="FOLDER", help="For the runs, the dataset and its figures.")
+    ],
     engine: Engine = EngineName.COMPILED,
     executor: Annotated[ExecutorName, typer.Option(help="This process, or several.")] = ExecutorName.PROCESSES,
     workers: Annotated[int | None, typer.Option(min=1, help="Number of processes; default: of processors.")] = None,
@@ -125,15 +137,17 @@ def sweep(
                 retry_failed=retry_failed, progress=progress,
             )  # fmt: skip
     except SweepError as error:
-        _stop(str(error), WRONG_INPUT)
+        stop(str(error), WRONG_INPUT)
     except SweepStoppedError as error:
-        _stop(f"{error}\n{kept_message(out)}", FAILED_RUN)
+        stop(f"{error}\n{kept_message(out)}", FAILED_RUN)
     except KeyboardInterrupt:
-        _stop(f"interrupted\n{kept_message(out)}", INTERRUPTED)
+        stop(f"interrupted\n{kept_message(out)}", INTERRUPTED)
+    except Stopped as reason:
+        stop(f"{reason.message}\n{kept_message(out)}", reason.status)
     with results:
         message, failed = closing(results, out)
-        console.print(summary(results))
-    console.print(message, soft_wrap=True)
+        say(summary(results))
+    say(message)
     if failed:
         raise SystemExit(FAILED_RUN)
 
@@ -142,7 +156,10 @@ def sweep(
 def analyze(
     scenario: Source,
     overrides: Overrides = None,
-    out: Annotated[Path | None, typer.Option(help="Folder for the certificate and its figures, if wanted.")] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(parser=_path, metavar="FOLDER", help="For the certificate and its figures, if wanted."),
+    ] = None,
     period: Annotated[float | None, typer.Option(help="Sampling period of the loss margin (s).")] = None,
     damping_ratio: Annotated[float | None, typer.Option(help="Find the smallest δ with this damping ratio.")] = None,
     decay_rate: Annotated[float | None, typer.Option(help="Find the smallest δ with this decay rate (1/s).")] = None,
@@ -152,74 +169,90 @@ def analyze(
     """Certify a scenario before it is simulated: stability, modes, margins and what disturbances do."""
     from drake_formation.analysis import IllPosedError, Questions, certify
     from drake_formation.analysis.report import report
-    from drake_formation.analysis_output import CERTIFICATE, closing, write_certificate
-    from drake_formation.output import OutputError, require_place
+    from drake_formation.analysis_output import CERTIFICATE, write_certificate
+    from drake_formation.output import PICTURES
+    from drake_formation.places import OutputError, reserved
 
     resolved = load_scenario(scenario, overrides=overrides)
     try:
         asked = Questions(period, damping_ratio, decay_rate, force_limit, topology)
-        if out:
-            require_place(out, mark=CERTIFICATE)
-        with Console(stderr=True).status("linearizing") as status:
+        with (
+            reserved(out, CERTIFICATE) if out else nullcontext() as place,
+            Console(stderr=True).status("linearizing", spinner="line") as status,
+        ):
             certificate = certify(resolved, questions=asked, progress=lambda part: status.update(f"analyzing: {part}"))
-            left_out = write_certificate(out, certificate) if out else {}
+            written = place and write_certificate(place, certificate)
     except (OutputError, IllPosedError) as error:
-        _stop(str(error), WRONG_INPUT)
-    console.print(report(certificate))
-    if out:
-        console.print(closing(out, left_out), soft_wrap=True)
+        stop(str(error), WRONG_INPUT)
+    say(report(certificate))
+    if written:
+        where = f"Certificate in {written.folder}, figures in {written.folder / PICTURES}."
+        say("\n".join([*written.remarks(), where]))
 
 
 @app.command()
 def validate(scenario: Source, overrides: Overrides = None) -> None:
     """Check a scenario and say what it reads as."""
-    console.print(_description(load_scenario(scenario, overrides=overrides)))
+    say(_description(load_scenario(scenario, overrides=overrides)))
 
 
 @app.command()
 def graphviz(
     scenario: Source,
-    output: Annotated[Path, typer.Option("--output", "-o", help="File ending in .dot, .svg, .png or .pdf.")],
+    output: Annotated[
+        Path,
+        typer.Option("--output", "-o", parser=_path, metavar="FILE", help="Ends in .dot, .svg, .png or .pdf."),
+    ],
     overrides: Overrides = None,
     depth: Annotated[int, typer.Option(min=1, help="1 shows the robots, 2 opens each of them.")] = 1,
 ) -> None:
     """Draw a scenario's block diagram."""
     from drake_formation.diagram import build_diagram
+    from drake_formation.places import OutputError, reason, reserved_file
     from drake_formation.viz.graphviz import write_diagram
+    from drake_formation.viz.rendering import require_format
 
-    diagram = build_diagram(load_scenario(scenario, overrides=overrides))
+    resolved = load_scenario(scenario, overrides=overrides)
     try:
-        write_diagram(diagram, output, depth=depth)
-    except (ValueError, OSError) as error:
-        _stop(str(error), WRONG_INPUT)
-    console.print(f"Diagram in {output}.", soft_wrap=True)
+        require_format(output)
+        with reserved_file(output) as partial:
+            write_diagram(build_diagram(resolved), partial, depth=depth)
+    except (ValueError, OutputError) as error:
+        stop(str(error), WRONG_INPUT)
+    except OSError as error:
+        stop(f"{output}: cannot be written: {reason(error)}", WRONG_INPUT)
+    say(f"Diagram in {output}.")
 
 
 @app.command()
 def reproduce(
     only: Annotated[list[str] | None, typer.Option(metavar="NAME", help="A part, such as table3, fig7 or fit.")] = None,
-    out: Annotated[Path, typer.Option(help="Folder for the report and the runs it is made of.")] = Path("out/paper"),
+    out: Annotated[
+        Path, typer.Option(parser=_path, metavar="FOLDER", help="For the report and the runs it is made of.")
+    ] = Path("out/paper"),
 ) -> None:
     """Rerun the paper's study and write a report: tables, figures and claims."""
     from drake_formation.paper.reproduce import reproduce as run_study
+    from drake_formation.places import OutputError
     from drake_formation.simulation import SimulationError
 
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed} / {task.total} runs"))
     with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True), transient=True) as progress:
         task = progress.add_task("study", total=None)
         try:
-            run_study(out, only or (), lambda done, total: progress.update(task, completed=done, total=total))
-        except ValueError as error:
-            _stop(str(error), WRONG_INPUT)
+            written = run_study(out, only or (), lambda done, total: progress.update(task, completed=done, total=total))
+        except (OutputError, ValueError) as error:
+            stop(str(error), WRONG_INPUT)
         except SimulationError as error:
-            _stop(str(error), FAILED_RUN)
-    console.print(f"Report in {out / 'report.html'}, tables in {out / 'tables.csv'}.", soft_wrap=True)
+            stop(str(error), FAILED_RUN)
+    where = f"Report in {written.folder / 'report.html'}, tables in {written.folder / 'tables.csv'}."
+    say("\n".join([*written.remarks(), where]))
 
 
 @app.command()
 def schema() -> None:
     """Print the JSON Schema of a scenario, for editors."""
-    print(json.dumps(json_schema(), indent=2, ensure_ascii=False))
+    say(json.dumps(json_schema(), indent=2, ensure_ascii=False))
 
 
 @app.command()
@@ -229,7 +262,7 @@ def scenarios() -> None:
     for name in shipped_scenarios():
         scenario = load_scenario(name)
         table.add_row(name, str(resolve(scenario).robots), scenario.description)
-    console.print(table)
+    say(table)
 
 
 def _simulate_with_progress(scenario: Scenario, engine: EngineName) -> "xr.Dataset":
@@ -292,9 +325,3 @@ def _description(scenario: Scenario) -> Table:
 
 def _values(value: float | tuple[float, ...]) -> str:
     return ", ".join(f"{number:g}" for number in value) if isinstance(value, tuple) else f"{value:g}"
-
-
-def _stop(message: str, status: int) -> NoReturn:
-    """Say what is wrong, as plain text on standard error, and leave."""
-    print(message, file=sys.stderr)
-    raise SystemExit(status)

@@ -1,109 +1,119 @@
-"""The folder a run leaves behind: written beside its place, and moved there when complete."""
+"""The folder that a run leaves behind."""
 
 import json
-import shutil
-import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import xarray as xr
 
 from drake_formation.diagram import build_diagram
 from drake_formation.metrics import Metrics
+from drake_formation.places import Kind, Place
 from drake_formation.scenario import Scenario, to_yaml
-from drake_formation.viz.figures import write_figures
 from drake_formation.viz.graphviz import write_diagram
+from drake_formation.viz.style import attempt_each
 
 RESULT, SCENARIO, METRICS, FAILURE = "result.nc", "scenario.yaml", "metrics.json", "failure.txt"
+PICTURES, DIAGRAMS = "figures", ("diagram.dot", "diagram.svg")
+
+RUN = Kind(RESULT, (METRICS, SCENARIO, PICTURES, *DIAGRAMS, RESULT))
+FAILED_RUN = Kind(FAILURE, (SCENARIO, RESULT, PICTURES, FAILURE))
 
 
-class OutputError(OSError):
-    """A place where a run cannot be written."""
+@dataclass(frozen=True)
+class Written:
+    """What was written.
 
-
-def require_place(folder: Path, *, mark: str = RESULT) -> None:
-    """Make sure that a result may be written to a folder.
-
-    Args:
+    Attributes:
         folder: where.
-        mark: the file by which an earlier result of the same sort, which may be replaced, is known.
-
-    Raises:
-        OutputError: it is a file, cannot be made, or holds something else than such a result, which would be lost.
+        failed: pictures that are missing, by name, and why.
+        notes: why it is somewhere else than asked for, if it is.
     """
-    if folder.exists() and not folder.is_dir():
-        raise OutputError(f"{folder}: is a file; give a folder that is new, empty or holds an earlier {mark}")
-    if folder.is_dir() and any(folder.iterdir()) and not (folder / mark).exists():
-        raise OutputError(f"{folder}: holds something else than a {mark}, which would be lost; give another folder")
-    try:
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=folder.parent):
-            pass
-    except OSError as error:
-        raise OutputError(f"{folder}: cannot be written: {error.strerror}") from error
+
+    folder: Path
+    failed: dict[str, str]
+    notes: list[str]
+
+    def remarks(self) -> list[str]:
+        """What the user should know, line by line."""
+        pictures = [f"No figure {name}: {reason.removesuffix('.')}." for name, reason in self.failed.items()]
+        return [*pictures, *self.notes]
 
 
-def write_run(folder: Path, scenario: Scenario, result: xr.Dataset, figures: Metrics) -> None:
-    """Write a complete run: metrics, result, resolved scenario, diagram and figures.
+def write_run(place: Place, scenario: Scenario, result: xr.Dataset, figures: Metrics) -> Written:
+    """Write a complete run: metrics, resolved scenario and result first, then diagram and figures.
 
     Args:
-        folder: where; an earlier run there is replaced as a whole.
+        place: where.
         scenario: as resolved; running it again repeats the run.
         result: what came out.
         figures: its metrics.
+
+    Raises:
+        OutputError: it cannot be written anywhere.
     """
-    with moved_into_place(folder) as partial:
-        (partial / METRICS).write_text(json.dumps(figures.to_dict(), indent=2) + "\n", encoding="utf-8")
-        _write_recorded(partial, scenario, result)
-        diagram = build_diagram(scenario)
-        for suffix in (".dot", ".svg"):
-            write_diagram(diagram, partial / f"diagram{suffix}")
+
+    def write(folder: Path) -> dict[str, str]:
+        (folder / METRICS).write_text(json.dumps(figures.to_dict(), indent=2) + "\n", encoding="utf-8")
+        _write_recorded(folder, scenario, result)
+        draw = {name: partial(_draw_diagram, scenario, folder / name) for name in DIAGRAMS}
+        return attempt_each(draw) | _draw_figures(folder, result)
+
+    return written(place, write)
 
 
-def write_failed_run(folder: Path, scenario: Scenario, partial_result: xr.Dataset, reason: str) -> Path:
-    """Write what a failed run recorded, beside the folder its result would have gone to.
+def write_failed_run(place: Place, scenario: Scenario, partial_result: xr.Dataset, reason: str) -> Written:
+    """Write what a failed run recorded, beside the place where its result would have gone.
 
-    Returns:
-        The folder, named after the one wanted: ``line.failed`` for ``line``.
+    The folder is named after the one wanted: ``line.failed`` for ``line``.
+
+    Raises:
+        OutputError: it cannot be written anywhere.
     """
-    failed = folder.with_name(f"{folder.name}.failed")
-    with moved_into_place(failed) as partial:
-        (partial / FAILURE).write_text(reason + "\n", encoding="utf-8")
-        _write_recorded(partial, scenario, partial_result)
-    return failed
+
+    def write(folder: Path) -> dict[str, str]:
+        (folder / FAILURE).write_text(reason + "\n", encoding="utf-8")
+        _write_recorded(folder, scenario, partial_result)
+        return _draw_figures(folder, partial_result)
+
+    return written(place, write, lambda: place.take_beside(".failed", FAILED_RUN))
+
+
+def written(place: Place, write: Callable[[Path], dict[str, str]], take: Callable[[], Path] | None = None) -> Written:
+    """Fill a place and take it.
+
+    Args:
+        place: where.
+        write: writes the files to a folder; gives the pictures that failed, and why.
+        take: takes the place, if not as usual.
+    """
+    failed = place.fill(write)
+    folder = (take or place.take)()
+    return Written(folder, failed, place.notes)
 
 
 def _write_recorded(folder: Path, scenario: Scenario, result: xr.Dataset) -> None:
     (folder / SCENARIO).write_text(to_yaml(scenario), encoding="utf-8")
     compressed = {name: {"zlib": True} for name, variable in result.data_vars.items() if "time" in variable.dims}
-    result.to_netcdf(folder / RESULT, engine="netcdf4", encoding=compressed)
-    (folder / "figures").mkdir()
-    write_figures(result, folder / "figures")
-
-
-@contextmanager
-def moved_into_place(folder: Path, *, mark: str = RESULT) -> Iterator[Path]:
-    """A new folder that takes the given one's place if all goes well, and is removed if not.
-
-    Args:
-        folder: where.
-        mark: as for :func:`require_place`.
-
-    Raises:
-        OutputError: as for :func:`require_place`.
-    """
-    require_place(folder, mark=mark)
-    partial = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
     try:
-        yield partial
-        partial.chmod(0o755)
-        if folder.exists():
-            former = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
-            folder.rename(former / "run")
-            partial.rename(folder)
-            shutil.rmtree(former)
-        else:
-            partial.rename(folder)
-    finally:
-        shutil.rmtree(partial, ignore_errors=True)
+        result.to_netcdf(folder / RESULT, engine="netcdf4", encoding=compressed)
+    except RuntimeError as error:  # what the NetCDF library says when the disk is full
+        raise OSError(f"{RESULT}: {error}") from error
+
+
+def _draw_figures(folder: Path, result: xr.Dataset) -> dict[str, str]:
+    (folder / PICTURES).mkdir()
+    failed: dict[str, str] = {}
+
+    def draw() -> None:
+        from drake_formation.viz.figures import write_figures  # Matplotlib itself may be out of order
+
+        failed.update(write_figures(result, folder / PICTURES))
+
+    return attempt_each({PICTURES: draw}) | failed
+
+
+def _draw_diagram(scenario: Scenario, path: Path) -> None:
+    write_diagram(build_diagram(scenario), path)

@@ -133,7 +133,8 @@ class _Search:
         per_delta = self.space.T @ self.formation.per_delta @ self.space
         falls = -2 * float(np.trace(at_rest @ per_delta))
         if self.damping_ratio is not None:
-            total = (np.trace(at_rest) / self.damping_ratio) ** 2
+            # A damping ratio below what rounding leaves is as good as that.
+            total = (np.trace(at_rest) / max(self.damping_ratio, NINE_DIGITS)) ** 2
             return float((total + abs(np.trace(at_rest @ at_rest))) / falls)
         block = self.formation.per_delta[np.ix_(velocities(robots), positions(robots))]
         stiffening = -np.linalg.eigvals(block).real

@@ -4,11 +4,18 @@ import base64
 import csv
 import html
 from collections.abc import Iterable
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 
 from drake_formation.paper.study import Section
 from drake_formation.paper.tables import Cell
+from drake_formation.places import Kind
+from drake_formation.viz.style import attempt_each
+
+RUNS = "runs"
+REPORT = Kind(RUNS, ("figures", "report.md", "tables.csv", "report.html"))
+"""A folder with runs is a study's, finished or not."""
 
 TITLE = "Hierarchical decentralized LQR formation control, reproduced"
 
@@ -26,21 +33,25 @@ h2 { margin-top: 2.5rem; font-size: 1.2rem; }
 """
 
 
-def write_report(folder: Path, sections: Iterable[Section]) -> None:
+def write_report(folder: Path, sections: Iterable[Section]) -> dict[str, str]:
     """Write ``report.md`` with its ``figures/``, ``report.html`` and ``tables.csv``.
 
     Args:
         folder: a folder that exists.
         sections: in order.
+
+    Returns:
+        Pictures that could not be drawn, by name, and why; the report says so in their places.
     """
     figures = folder / "figures"
     figures.mkdir(exist_ok=True)
     parts, cells = [], []
+    failed: dict[str, str] = {}
     for section in sections:
-        images = []
-        for name, draw in section.pictures.items():
-            draw(figures / f"{name}.png")
-            images.append(f"![{section.title}](figures/{name}.png)")
+        failed |= attempt_each(
+            {name: partial(draw, figures / f"{name}.png") for name, draw in section.pictures.items()}
+        )
+        images = [_image(section, name, failed.get(name)) for name in section.pictures]
         parts.append("\n\n".join(filter(None, [f"## {section.title}", section.text, *images])))
         cells.extend(section.cells)
     introduction = INTRODUCTION.format(ours=version("drake-formation"), drake=version("drake"))
@@ -48,6 +59,11 @@ def write_report(folder: Path, sections: Iterable[Section]) -> None:
     (folder / "report.md").write_text(markdown, encoding="utf-8")
     (folder / "report.html").write_text(to_html(markdown, folder), encoding="utf-8")
     write_csv(folder / "tables.csv", cells)
+    return failed
+
+
+def _image(section: Section, name: str, failure: str | None) -> str:
+    return f"![{section.title}](figures/{name}.png)" if failure is None else f"*No figure {name}: {failure}*"
 
 
 def to_html(markdown: str, folder: Path) -> str:

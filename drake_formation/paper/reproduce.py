@@ -4,15 +4,18 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from drake_formation.config.errors import nearest
-from drake_formation.paper.report import write_report
+from drake_formation.output import Written, written
+from drake_formation.paper.report import REPORT, RUNS, write_report
 from drake_formation.paper.store import Store
 from drake_formation.paper.study import PARTS
+from drake_formation.places import make_folder, reserved
+from drake_formation.scenario import Scenario
 
 Progress = Callable[[int, int], None]
 """Called with how many of the missing runs are done, and how many there are."""
 
 
-def reproduce(folder: Path, only: Sequence[str] = (), progress: Progress | None = None) -> None:
+def reproduce(folder: Path, only: Sequence[str] = (), progress: Progress | None = None) -> Written:
     """Make every run that is missing in a folder, and write the report of the named parts there.
 
     Args:
@@ -20,15 +23,26 @@ def reproduce(folder: Path, only: Sequence[str] = (), progress: Progress | None 
         only: names of parts; all if empty.
         progress: called before the first run and after each.
 
+    Returns:
+        Where the report is, and the pictures it is without.
+
     Raises:
         ValueError: a part is unknown.
+        OutputError: the folder cannot be used, or holds something else than an earlier study.
     """
     for name in only:
         if name not in PARTS:
             raise ValueError(f"no part {name!r} of the study{_hint(name)}; there are {', '.join(PARTS)}")
     parts = [part for name, part in PARTS.items() if not only or name in only]
-    store = Store(folder / "runs")
-    wanted = [scenario for part in parts for scenario in part.runs()]
+    make_folder(folder, REPORT)
+    store = Store(folder / RUNS)  # kept whatever happens to the report
+    with reserved(folder, REPORT) as place:
+        _run(store, [scenario for part in parts for scenario in part.runs()], progress)
+        sections = [part.make(store) for part in parts]
+        return written(place, lambda partial: write_report(partial, sections))
+
+
+def _run(store: Store, wanted: Sequence[Scenario], progress: Progress | None) -> None:
     total, done = len(store.missing(wanted)), 0
 
     def count() -> None:
@@ -40,7 +54,6 @@ def reproduce(folder: Path, only: Sequence[str] = (), progress: Progress | None 
     if progress:
         progress(0, total)
     store.run(wanted, count)
-    write_report(folder, [part.make(store) for part in parts])
 
 
 def _hint(name: str) -> str:

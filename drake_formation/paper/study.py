@@ -27,6 +27,7 @@ from drake_formation.paper.store import Store
 from drake_formation.paper.tables import Cell, table, table_runs
 from drake_formation.paper.trajectories import comparison, s_curve, s_curve_figure, trajectory_runs
 from drake_formation.scenario import Scenario, load_scenario
+from drake_formation.viz.style import draw
 
 Picture = Callable[[Path], None]
 """Draws itself to a PNG file."""
@@ -93,12 +94,12 @@ def _table(name: str, title: str, store: Store) -> Section:
     return Section(title=title, text="\n".join([markdown_table(heading, rows), "", *notes]).rstrip(), cells=cells)
 
 
-def _figure(name: str, title: str, draw: Callable[[Store], Figure], store: Store) -> Section:
-    return Section(title=title, pictures={name: _saved(draw(store))})
+def _figure(name: str, title: str, make: Callable[[Store], Figure], store: Store) -> Section:
+    return Section(title=title, pictures={name: partial(_save, partial(make, store))})
 
 
-def _saved(figure: Figure) -> Picture:
-    return lambda path: figure.savefig(path, dpi=110)
+def _save(make: Callable[[], Figure], path: Path) -> None:
+    draw(make, path, dpi=110)
 
 
 def _block_diagram(name: str, title: str, subsystem: str | None, _store: Store) -> Section:
@@ -157,7 +158,7 @@ def _sensitivity(store: Store) -> Section:
             "The line with rubber; one inferred parameter varied at a time, the study's own value marked. What moves "
             "here rests on the inference."
         ),
-        pictures={"sensitivity": _saved(sensitivity(store))},
+        pictures={"sensitivity": partial(_save, partial(sensitivity, store))},
     )
 
 

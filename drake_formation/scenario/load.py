@@ -63,14 +63,16 @@ def find_file(source: str | Path, shipped: Mapping[str, Path], kind: str) -> Pat
     try:
         exists, folder = path.exists(), path.is_dir()
     except (OSError, ValueError) as error:
-        raise ScenarioError([Fault((), f"not a usable path: {error}", origin=str(source))]) from error
+        raise ScenarioError([Fault((), f"not a usable path: {error}", origin=str(source) or repr(source))]) from error
     if exists and not folder:
         return path
     if str(source) in shipped:
         return shipped[str(source)]
     message = "a folder, not a file" if folder else f"no such file or shipped {kind}"
     allowed = f"a file, {', '.join(shipped)}"
-    raise ScenarioError([Fault((), message, "", allowed, nearest(path.stem, shipped), origin=str(source))])
+    raise ScenarioError(
+        [Fault((), message, "", allowed, nearest(path.stem, shipped), origin=str(source) or repr(source))]
+    )
 
 
 def _called(scenario: Scenario) -> str:

@@ -4,6 +4,8 @@ The parser knows YAML 1.2 only, whatever a file declares: ``yes`` is text and ``
 mappings, lists, numbers, booleans, text and null; no other object can come out of a file.
 """
 
+import os
+import stat
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path as FilePath
@@ -18,6 +20,11 @@ from drake_formation.config.errors import Fault, Path, ScenarioError, shown
 
 _MOST_VALUES = 300_000
 """More than any scenario needs; stops aliases that multiply without end."""
+
+MOST_BYTES = 2_000_000
+"""Of a file; a scenario of a thousand robots has some ten thousand."""
+
+_ALLOWED = f"a regular file of UTF-8 text, at most {MOST_BYTES // 10**6} MB"
 
 _TAG = "tag:yaml.org,2002:"
 
@@ -50,16 +57,33 @@ def read(path: FilePath) -> Document:
     """Read a scenario file.
 
     Raises:
-        ScenarioError: the file cannot be read, is not UTF-8 text, or is not one YAML mapping.
+        ScenarioError: as for :func:`read_text`, or the file is not one YAML mapping.
     """
+    return parse(read_text(path), str(path))
+
+
+def read_text(path: FilePath) -> str:
+    """Text of a file that a user named: whatever else the name leads to is not waited for.
+
+    Raises:
+        ScenarioError: it cannot be read, is not a regular file or too large for one of these, or is not UTF-8 text.
+    """
+    content = b""
     try:
-        text = path.read_text(encoding="utf-8")
-    except UnicodeDecodeError as error:
-        raise ScenarioError([Fault((), "not UTF-8 text", origin=str(path))]) from error
+        # Opening a pipe that nobody writes to would wait; this does not.
+        with open(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb") as file:  # noqa: PTH123 (a descriptor)
+            problem = "" if stat.S_ISREG(os.fstat(file.fileno()).st_mode) else "not a regular file"
+            if not problem:
+                content = file.read(MOST_BYTES + 1) or b""
+        problem = "too large" if len(content) > MOST_BYTES else problem
+        text = content.decode("utf-8")
+    except UnicodeDecodeError:
+        problem = problem or "not UTF-8 text"
     except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise ScenarioError([Fault((), f"cannot be read: {reason}", origin=str(path))]) from error
-    return parse(text, str(path))
+        problem = f"cannot be read: {(isinstance(error, OSError) and error.strerror) or error}"
+    if problem:
+        raise ScenarioError([Fault((), problem, allowed=_ALLOWED, origin=str(path))])
+    return text
 
 
 def parse(text: str, name: str) -> Document:

@@ -9,7 +9,7 @@ from drake_formation.config.errors import dotted, nearest, shown
 from drake_formation.scenario import Fault, ScenarioError, shipped_scenarios
 from drake_formation.scenario.load import find_file
 from drake_formation.scenario.overrides import apply, plain
-from drake_formation.scenario.source import Document, read
+from drake_formation.scenario.source import Document, parse, read, read_text
 from drake_formation.scenario.validate import validate
 from drake_formation.sweep.axes import Axis, resolve
 from drake_formation.sweep.coordinates import name_faults
@@ -42,8 +42,8 @@ def load_sweep(source: str | Path | Mapping[str, Any]) -> Sweep:
         document, folder, text = Document("the sweep", plain(source)), Path(), ""
     else:
         path = find_file(source, shipped_sweeps(), "sweep")
-        document, folder = read(path), path.parent
-        text = path.read_text(encoding="utf-8")
+        text, folder = read_text(path), path.parent
+        document = parse(text, str(path))
     model = parsed(document)
     axes = _axes(document, model)
     base = _base(document, model, folder)

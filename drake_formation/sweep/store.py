@@ -13,6 +13,7 @@ from typing import IO, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from drake_formation.places import Kind, OutputError, make_folder
 from drake_formation.sweep.errors import SweepError, SweepStoppedError
 from drake_formation.sweep.work import Outcome
 
@@ -158,14 +159,10 @@ def _unpacked(layout: list[tuple[str, list[int]]], data: bytes) -> dict[str, NDA
 
 def _require_place(folder: Path) -> None:
     """Make a folder, unless it holds something else than a sweep."""
-    if folder.exists() and not folder.is_dir():
-        raise SweepError(f"{folder}: is a file; give a folder that is new, empty or holds this sweep")
     try:
-        if folder.is_dir() and any(folder.iterdir()) and not (folder / LOCK).exists():
-            raise SweepError(f"{folder}: holds something else than a sweep; give another folder")
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise SweepError(f"{folder}: cannot be used: {error.strerror}") from error
+        make_folder(folder, Kind(LOCK, (LOCK, DATABASE)))
+    except OutputError as error:
+        raise SweepError(str(error)) from error
 
 
 def _lock(path: Path) -> IO[str]:

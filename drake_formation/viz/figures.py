@@ -1,6 +1,7 @@
 """Figures of a run: paths, errors, spring lengths and forces, as the paper shows them."""
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from drake_formation.metrics import length
+from drake_formation.viz.style import draw_each
 
 SNAPSHOTS = 7
 """Formation snapshots drawn along the way, hand-off and end included."""
@@ -52,8 +54,12 @@ def tracking_error(result: xr.Dataset) -> Figure:
 
 def consensus_error(result: xr.Dataset) -> Figure:
     """Consensus error of every robot on a logarithmic scale (paper, Figs. 6 and 11)."""
-    figure = _history(result, length(result["consensus_error"]), "consensus error ‖e‖ (m)", "consensus error")
+    error = length(result["consensus_error"])
+    figure = _history(result, error, "consensus error ‖e‖ (m)", "consensus error")
     axes = figure.axes[0]
+    if not bool((error > 0).any()):
+        axes.set_ylim(0.0, 1e-6)
+        return figure
     top = max(float(axes.dataLim.y1), 1e-6)
     axes.set_yscale("log")
     # A zero crossing dives as deep as a sample happens to hit it; six decades are enough to see anything.
@@ -115,13 +121,9 @@ FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
 """Every figure of a run, by the name of its file."""
 
 
-def write_figures(result: xr.Dataset, folder: Path) -> list[Path]:
-    """Draw every figure of a run as a PNG file in a folder that exists, and say where they are."""
-    files = []
-    for name, draw in FIGURES.items():
-        files.append(folder / f"{name}.png")
-        draw(result).savefig(files[-1], dpi=150)
-    return files
+def write_figures(result: xr.Dataset, folder: Path) -> dict[str, str]:
+    """Draw every figure of a run as a PNG file in a folder that exists; gives those that failed, and why."""
+    return draw_each({name: partial(draw, result) for name, draw in FIGURES.items()}, folder)
 
 
 def robot_colours(result: xr.Dataset) -> dict[int, tuple[float, ...]]:

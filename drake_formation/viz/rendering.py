@@ -26,12 +26,20 @@ def render(dot: str, path: Path) -> None:
         ValueError: the suffix is another one, or the text is not Graphviz's language.
         FileNotFoundError: there is no such folder.
     """
-    draw = _FORMATS.get(path.suffix)
-    if draw is None:
-        raise ValueError(f"cannot draw {path.name}: the name must end in {', '.join(_FORMATS)}")
+    require_format(path)
     if not path.parent.is_dir():
         raise FileNotFoundError(f"cannot draw {path.name}: there is no folder {path.parent}")
-    path.write_bytes(draw(dot))
+    path.write_bytes(_FORMATS[path.suffix](dot))
+
+
+def require_format(path: Path) -> None:
+    """See to it that a file's suffix is a format that can be drawn.
+
+    Raises:
+        ValueError: it is not.
+    """
+    if path.suffix not in _FORMATS:
+        raise ValueError(f"cannot draw {path.name}: the name must end in {', '.join(_FORMATS)}")
 
 
 def svg(dot: str) -> str:

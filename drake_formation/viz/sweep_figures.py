@@ -1,6 +1,7 @@
 """Figures of a sweep over one or two axes: lines, heat maps, and the spread of random samples."""
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,8 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from drake_formation.viz.style import draw_each
+
 Numbers = NDArray[np.float64]
 
 MOST_LINES = 10
@@ -21,23 +24,19 @@ _WIDE = 100.0
 """Ratio between the largest and the least value from which on a logarithmic scale shows more."""
 
 
-def write_sweep_figures(dataset: xr.Dataset, folder: Path) -> list[Path]:
-    """Draw every metric of a sweep over one or two axes as a PNG file, and say where they are.
+def write_sweep_figures(dataset: xr.Dataset, folder: Path) -> dict[str, str]:
+    """Draw every metric of a sweep over one or two axes as a PNG file; gives those that failed, and why.
 
     Args:
         dataset: from :func:`drake_formation.sweep.run_sweep`.
         folder: where; made if missing. Figures of metrics that are gone are removed.
     """
-    wanted = {f"{name}.png": metric_figure(dataset, name) for name in sweep_metrics(dataset)}
+    wanted = {name: partial(metric_figure, dataset, name) for name in sweep_metrics(dataset)}
     folder.mkdir(parents=True, exist_ok=True)
     for old in folder.glob("*.png"):
-        if old.name not in wanted:
+        if old.stem not in wanted:
             old.unlink()
-    files = []
-    for name, figure in wanted.items():
-        files.append(folder / name)
-        figure.savefig(files[-1], dpi=150)
-    return files
+    return draw_each(wanted, folder)
 
 
 def sweep_metrics(dataset: xr.Dataset) -> list[str]:

@@ -1,5 +1,7 @@
 """Figures of a run show what the run holds."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ from drake_formation import load_scenario, simulate
 from drake_formation.viz import figures
 
 QUICK = {"aggregation.duration": 3.0, "transport.duration": 8.0, "robots.start": {"centre": [2.5, 3.5]}}
+AT_REST = {"aggregation.duration": 0.0, "transport.goal": [2.5, 3.5]}
 
 
 @pytest.fixture(scope="module")
@@ -15,9 +18,9 @@ def result():
 
 
 def test_every_figure_is_written(result, tmp_path):
-    files = figures.write_figures(result, tmp_path)
-    assert [path.stem for path in files] == list(figures.FIGURES)
-    assert all(path.read_bytes().startswith(b"\x89PNG") for path in files)
+    assert figures.write_figures(result, tmp_path) == {}
+    assert {path.stem for path in tmp_path.iterdir()} == set(figures.FIGURES)
+    assert all(path.read_bytes().startswith(b"\x89PNG") for path in tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("name", figures.FIGURES)
@@ -65,7 +68,19 @@ def test_every_robot_has_a_colour_of_its_own():
         {"springs.graph": []},
         {"aggregation.duration": 0.0},
         {"formation": {"shape": "line", "robots": 1, "side": 1.0}},
+        {"formation": {"shape": "line", "robots": 1, "side": 1.0}, **AT_REST, "avoidance.obstacles": []},
+        AT_REST,
+        {**AT_REST, "consensus.graph": [], "springs.graph": []},
+        {**AT_REST, "transport.goal": [1e6, 1e6], "robots.start": {"centre": [1e6, 1e6]}},
+        {"transport.duration": 1e-9},
+        {"transport.duration": 1e-6, "aggregation.duration": 1e-9},
+        {"robots.mass": 1e12},
+        {"robots.mass": 1e-6, "tracking.R": 1e9},
+        {"springs.stiffness": 0.0, "consensus.delta": 1e6},
+        {"formation": {"shape": "line", "robots": 12, "side": 1e-3}},
     ],
 )
 def test_figures_of_what_is_missing_are_drawn_too(overrides, tmp_path):
-    figures.write_figures(simulate(load_scenario("line", overrides={**QUICK, **overrides})), tmp_path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert figures.write_figures(simulate(load_scenario("line", overrides={**QUICK, **overrides})), tmp_path) == {}

@@ -8,11 +8,15 @@ BENCH ?= .venv-bench
 # pip installs from outside, so that the environment needs no pip of its own (Debian ships venv without it).
 PIP := $(PYTHON) -m pip --python $(BIN)/python --disable-pip-version-check
 
-.PHONY: help demo test check lint types notebooks diagrams reproduce bench clean
+# How long `make explore` draws new examples.
+MINUTES ?= 10
+
+.PHONY: help demo test explore check lint types notebooks diagrams reproduce bench clean
 
 help:
 	@echo "make demo       run the paper's line formation and say where the pictures are"
-	@echo "make test       run the whole test suite"
+	@echo "make test       run the whole test suite, on the same examples each time"
+	@echo "make explore    try the laws on new examples for MINUTES=10"
 	@echo "make check      lint, types and tests"
 	@echo "make diagrams   export the pictures in diagrams/ anew"
 	@echo "make reproduce  rerun the paper's study into out/paper"
@@ -24,6 +28,9 @@ demo: $(VENV)/installed
 
 test: $(VENV)/installed-dev
 	$(BIN)/python -m pytest --numprocesses auto --dist loadfile $(PYTEST)
+
+explore: $(VENV)/installed-dev
+	$(BIN)/python tests/explore.py $(MINUTES) $(PYTEST)
 
 check: lint types test
 

@@ -4,6 +4,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from threadpoolctl import threadpool_limits
+
 from drake_formation.analysis.certificate import Certificate
 from drake_formation.analysis.errors import UNSOLVABLE, IllPosedError
 from drake_formation.output import SCENARIO, moved_into_place
@@ -31,7 +33,8 @@ def write_certificate(folder: Path, certificate: Certificate) -> dict[str, str]:
     Raises:
         OutputError: it cannot be written there.
     """
-    with moved_into_place(folder, mark=CERTIFICATE) as partial:
+    # Many small matrices: threads of the linear algebra would wait for one another most of the time.
+    with moved_into_place(folder, mark=CERTIFICATE) as partial, threadpool_limits(limits=1, user_api="blas"):
         (partial / CERTIFICATE).write_text(certificate.to_json(), encoding="utf-8")
         (partial / SCENARIO).write_text(to_yaml(certificate.scenario), encoding="utf-8")
         (partial / "figures").mkdir()

@@ -74,7 +74,7 @@ SHAKEN = {
 @pytest.mark.parametrize("of", ["neighbour", "relative"])
 @pytest.mark.parametrize("delta_v", [0.0, 100.0])
 def test_a_curve_of_few_margins_is_the_curve(of, delta_v):
-    """Its points are margins, and so are those between, but where another mode becomes the critical one."""
+    """Its points are margins, and so are those between, but in the few intervals where it jumps or ends."""
     formation = linearize(load_scenario("quadrilateral", overrides=SHAKEN))
     deltas, delays = curve(formation, of, delta_v, 1.0, 2e4)
     assert (deltas[0], deltas[-1]) == pytest.approx((1.0, 2e4))
@@ -84,4 +84,4 @@ def test_a_curve_of_few_margins_is_the_curve(of, delta_v):
     drawn = np.sqrt(delays[:-1] * delays[1:])
     exact = margins(formation, of, between.tolist(), delta_v)
     near = np.isclose(drawn, exact, rtol=0.08, equal_nan=True)
-    assert np.sum(~near) <= 2
+    assert np.sum(~near) <= 3

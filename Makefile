@@ -8,11 +8,12 @@ BENCH ?= .venv-bench
 # pip installs from outside, so that the environment needs no pip of its own (Debian ships venv without it).
 PIP := $(PYTHON) -m pip --python $(BIN)/python --disable-pip-version-check
 
-.PHONY: help demo test fuzz check lint types notebooks diagrams reproduce bench clean
+.PHONY: help demo test explore fuzz check lint types notebooks diagrams reproduce bench clean
 
 help:
 	@echo "make demo       run the paper's line formation and say where the pictures are"
-	@echo "make test       run the whole test suite"
+	@echo "make test       run the whole test suite, on the same examples each time"
+	@echo "make explore    try the laws on new examples; MINUTES=10 by default"
 	@echo "make fuzz       try mutated commands, and count what came of them; MINUTES=10 SEED=7 for others"
 	@echo "make check      lint, types and tests"
 	@echo "make diagrams   export the pictures in diagrams/ anew"
@@ -25,6 +26,9 @@ demo: $(VENV)/installed
 
 test: $(VENV)/installed-dev
 	$(BIN)/python -m pytest --numprocesses auto --dist loadfile $(PYTEST)
+
+explore: $(VENV)/installed-dev
+	$(BIN)/python tests/explore.py $(or $(MINUTES),10) $(PYTEST)
 
 # Mutated commands, new ones with each seed: make fuzz MINUTES=10 SEED=7. Without MINUTES, a fixed number of them.
 SEED ?= 1

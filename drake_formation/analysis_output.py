@@ -5,6 +5,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from threadpoolctl import threadpool_limits
+
 from drake_formation.analysis.certificate import Certificate
 from drake_formation.analysis.errors import IllPosedError
 from drake_formation.output import PICTURES, SCENARIO, Written, written
@@ -37,7 +39,10 @@ def write_certificate(place: Place, certificate: Certificate) -> Written:
         (folder / CERTIFICATE_FILE).write_text(certificate.to_json(), encoding="utf-8")
         (folder / SCENARIO).write_text(to_yaml(certificate.scenario), encoding="utf-8")
         (folder / PICTURES).mkdir()
-        return draw_each({name: partial(draw, certificate) for name, draw in FIGURES.items()}, folder / PICTURES)
+        drawn = {name: partial(draw, certificate) for name, draw in FIGURES.items()}
+        # Many small matrices: threads of the linear algebra would wait for one another most of the time.
+        with threadpool_limits(limits=1, user_api="blas"):
+            return draw_each(drawn, folder / PICTURES)
 
     return written(place, write)
 

@@ -5,13 +5,11 @@ import sys
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import pytest
-from hypothesis import settings
+from examples import load_profile
 
 from drake_formation.cli import main
 
-# Building a diagram takes as long as it takes, on a busy machine longer than Hypothesis' 0.2 s.
-settings.register_profile("drake-formation", deadline=None)
-settings.load_profile("drake-formation")
+load_profile()
 
 
 @pytest.fixture

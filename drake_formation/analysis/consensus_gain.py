@@ -13,6 +13,9 @@ from drake_formation.analysis.shape import positions, velocities
 TRIED = 240
 """Values of δ tried between 0 and where the answer is known to be no."""
 
+LEAST = 1e-9
+"""The least damping ratio, and decay rate (1/s), that may be asked for: less cannot be told from none."""
+
 NINE_DIGITS = 1e-9
 """A request is met to nine digits: at δ_v = 0 every relative mode decays at d/2m exactly, to rounding."""
 
@@ -67,8 +70,8 @@ def smallest_delta(
 
     Args:
         formation: its own δ plays no part.
-        damping_ratio: least damping ratio, above 0 and at most 1.
-        decay_rate: least decay rate (1/s), above 0.
+        damping_ratio: least damping ratio, from 1e-9 to 1.
+        decay_rate: least decay rate (1/s), 1e-9 or more.
 
     Raises:
         IllPosedError: nothing sensible is requested, or consensus moves no mode.
@@ -94,10 +97,10 @@ def smallest_delta(
 def _require_request(damping_ratio: float | None, decay_rate: float | None) -> None:
     if damping_ratio is None and decay_rate is None:
         raise IllPosedError("nothing is requested: give a damping ratio, a decay rate (1/s) or both")
-    if damping_ratio is not None and not 0 < damping_ratio <= 1:
-        raise IllPosedError(f"a damping ratio of {damping_ratio:g} is no request: allowed is above 0 and at most 1")
-    if decay_rate is not None and not 0 < decay_rate < np.inf:
-        raise IllPosedError(f"a decay rate of {decay_rate:g} 1/s is no request: allowed is any above 0")
+    if damping_ratio is not None and not LEAST <= damping_ratio <= 1:
+        raise IllPosedError(f"a damping ratio of {damping_ratio:g} is no request: allowed is from {LEAST:g} to 1")
+    if decay_rate is not None and not LEAST <= decay_rate < np.inf:
+        raise IllPosedError(f"a decay rate of {decay_rate:g} 1/s is no request: allowed is from {LEAST:g} on")
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from drake_formation.analysis.blocks import blocks
+from drake_formation.analysis.blocks import blocks, distinct
 from drake_formation.analysis.delay_eigenvalues import Crossing, first_crossing, least, require_stable
 from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.linearization import LinearFormation, own
@@ -39,9 +39,6 @@ Array = NDArray[np.float64]
 
 Delayed = Literal["neighbour", "relative"]
 """What is delayed: the neighbours' states, or the robots' whole difference to them."""
-
-SAME_DIGITS = 12
-"""Blocks that agree to so many digits are one."""
 
 LITTLE_LAG = 0.1
 """Phase lag (rad) below which a margin is one of damping only: the virtual springs are hardly damped."""
@@ -147,13 +144,6 @@ def _first_crossing(present: Array, delayed: Array, masses: Array) -> Crossing |
     """The least over all blocks, the small ones first: what they find spares the large ones much of the search."""
     require_stable(present + delayed)
     best: Crossing | None = None
-    for part in _distinct(blocks([present, delayed], masses)):
+    for part in distinct(blocks([present, delayed], masses)):
         best = least([best, first_crossing(part[0], part[1], best.delay if best else np.inf)])
     return best
-
-
-def _distinct(parts: list[tuple[Array, ...]]) -> list[tuple[Array, ...]]:
-    """Blocks without repetition, small ones first: identical robots have modes many times over."""
-    size = max(np.abs(matrix).max() for part in parts for matrix in part)
-    found = {(np.round(np.hstack(part) / size, SAME_DIGITS) + 0.0).tobytes(): part for part in parts}
-    return sorted(found.values(), key=lambda part: len(part[0]))

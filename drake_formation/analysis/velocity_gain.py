@@ -5,26 +5,40 @@ A mode of displacements φ has mass m = φᵀMφ, damping φᵀDφ + λ δ_v and
     m s² + (d + λ δ_v) s + k = 0,  ζ = (d + λ δ_v) / (2 √(m k)).
 
 For identical robots with isotropic tracking this is exact (λ is the algebraic connectivity and k = k_p + λ δ, plus what
-the object's springs add) and δ_v follows at once. Otherwise damping mixes the modes; then ζ is taken from the
-eigenvalues of the loop that move as φ does, and δ_v is a root of it.
+the object's springs add) and δ_v follows at once. Otherwise damping mixes the modes; then ζ is that of the pair of
+eigenvalues that begins as the mode at δ_v = 0, followed as δ_v rises (:mod:`drake_formation.analysis.pairs`).
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.analysis.agreement import require_agreement
+from drake_formation.analysis.blocks import bases, reduced
 from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.force_bound import require_stable
 from drake_formation.analysis.linearization import LinearFormation
+from drake_formation.analysis.pairs import Pair, at, course, pairs_of
 from drake_formation.analysis.shape import positions, velocities
+from drake_formation.scenario import resolve
 
 Array = NDArray[np.float64]
 
+LARGEST = 1e3
+"""The largest damping ratio (ζ) asked for: the two eigenvalues are then a factor of 4e6 apart."""
+
 _SORTING = 1e-6
 """Share of the stiffness, and relative distance of two stiffnesses, that is nothing but enough to sort modes by."""
+
+_MOST = 1e6
+"""Where the search for δ_v ends, in units of what would damp the mode critically if it were alone."""
+
+_ACCURACY = 1e-6
+"""How well the eigenvalues found must have the ratio, relative to it."""
 
 
 @dataclass(frozen=True)
@@ -82,6 +96,33 @@ class _SlowestMode:
     connectivity: float
 
 
+@dataclass(frozen=True)
+class _Block:
+    """A part of the loop that nothing else acts on: without δ_v, per unit of it, and the mode's displacements."""
+
+    at_rest: Array
+    per_delta_v: Array
+    shape: Array
+
+    def loop(self, delta_v: float) -> Array:
+        return self.at_rest + delta_v * self.per_delta_v
+
+    def solved(self, damping_ratio: float) -> Pair:
+        """The pair of a block of one mode, by the quadratic."""
+        stiffness, damping = -self.at_rest[1]
+        delta_v = (2 * damping_ratio * np.sqrt(stiffness) - damping) / -self.per_delta_v[1, 1]
+        return pairs_of(self.loop, self.shape, float(delta_v))[0]
+
+
+@dataclass(frozen=True)
+class _Damped:
+    """The mode's pair at the gain that damps it, its ratio without, and whether the quadratic gave the gain."""
+
+    pair: Pair
+    without: float
+    closed_form: bool
+
+
 def velocity_gain(formation: LinearFormation, *, damping_ratio: float, delta: float | None = None) -> VelocityGain:
     """The smallest δ_v that damps the slowest consensus mode by a ratio.
 
@@ -90,65 +131,106 @@ def velocity_gain(formation: LinearFormation, *, damping_ratio: float, delta: fl
 
     Args:
         formation: the linearized loop; its own δ_v plays no part.
-        damping_ratio: ζ above 0; 1 is critical damping.
+        damping_ratio: ζ above 0 and at most 1000; 1 is critical damping.
         delta: δ (N/m); the scenario's if not given.
 
+    Returns:
+        The gain; its ``damping_ratio`` is that of two eigenvalues of the loop, conjugate or both real.
+
     Raises:
-        IllPosedError: one robot, a graph that is not connected, a damping ratio that is none, an unstable loop, or
-            modes that damping mixes so that no δ_v gives this one the ratio.
+        IllPosedError: one robot, a graph that is not connected, a damping ratio that is none, a loop that is unstable
+            without δ_v or with it, or modes that damping mixes before this one has the ratio.
     """
     require_agreement(formation, "consensus mode to damp")
-    if not (np.isfinite(damping_ratio) and damping_ratio > 0):
-        raise IllPosedError(f"a damping ratio is above 0 and finite; {damping_ratio:g} is not")
+    if not 0 < damping_ratio <= LARGEST:
+        raise IllPosedError(f"a damping ratio is above 0 and at most {LARGEST:g}; {damping_ratio:g} is not")
     delta = formation.delta if delta is None else delta
     require_stable(formation.closed_loop(delta, 0.0), delta, 0.0)
     mode = _slowest_mode(formation, delta)
-
-    def excess(delta_v: float) -> float:
-        return _damping(formation.closed_loop(delta, delta_v), mode)[0] - damping_ratio
-
-    without = excess(0.0) + damping_ratio
-    by_quadratic = (2 * damping_ratio * np.sqrt(mode.stiffness) - mode.damping) / mode.connectivity
-    if without >= damping_ratio * (1 - 1e-12):
-        delta_v, closed = 0.0, True
-    elif by_quadratic > 0 and abs(excess(by_quadratic)) <= 1e-9 * damping_ratio:
-        delta_v, closed = float(by_quadratic), True
-    else:
-        delta_v, closed = _root(excess, max(by_quadratic, 1e-6), damping_ratio), False
-    loop = formation.closed_loop(delta, delta_v)
-    reached, decay = _damping(loop, mode)
+    moved = _blocks_moved(formation, delta, mode)
+    found = max((_damped(block, damping_ratio, mode) for block in moved), key=lambda each: each.pair.gain)
+    if found.pair.gain > 0 and not abs(found.pair.damping_ratio / damping_ratio - 1) <= _ACCURACY:
+        raise IllPosedError(
+            f"δ_v = {found.pair.gain:.3g} N s/m, for a damping ratio of {damping_ratio:g}, is too far apart in size "
+            "from the loop's other numbers for its eigenvalues to be computed"
+        )
+    loop = formation.closed_loop(delta, found.pair.gain)
+    require_stable(loop, delta, found.pair.gain)
     values = np.linalg.eigvals(loop)
     return VelocityGain(
-        damping_ratio=reached,
+        damping_ratio=found.pair.damping_ratio,
         requested=damping_ratio,
         delta=delta,
-        delta_v=delta_v,
-        without=without,
+        delta_v=found.pair.gain,
+        without=found.without,
         frequency=float(np.sqrt(mode.stiffness)),
-        decay_rate=decay,
+        decay_rate=found.pair.decay_rate,
         laplacian_eigenvalue=float(mode.connectivity / np.mean(_content(mode.shape, mode.shape))),
-        closed_form=closed,
+        closed_form=found.closed_form,
         least_damping_ratio=float(np.min(-values.real / np.abs(values))),
     )
 
 
-def _root(excess: Any, guess: float, damping_ratio: float) -> float:
+def _blocks_moved(formation: LinearFormation, delta: float, mode: _SlowestMode) -> Iterator[_Block]:
+    """The blocks of the loop in which the mode moves."""
+    masses = resolve(formation.scenario).masses
+    matrices = [formation.closed_loop(delta, 0.0), formation.per_delta_v]
+    for basis in bases(matrices, masses):
+        shapes, sizes, _ = np.linalg.svd(basis.T @ mode.mass @ mode.shape, full_matrices=False)
+        if sizes.max() > 0.5:
+            at_rest, per_delta_v = (reduced(matrix, basis, masses) for matrix in matrices)
+            yield _Block(at_rest, per_delta_v, shapes[:, sizes > 0.5])
+
+
+def _damped(block: _Block, damping_ratio: float, mode: _SlowestMode) -> _Damped:
+    """The mode's pair in a block at the smallest δ_v that gives it the ratio; of several the one that takes most."""
+
+    def damped(pair: Pair) -> _Damped:
+        without = pair.damping_ratio
+        if without >= damping_ratio * (1 - 1e-12):
+            return _Damped(pair, without, True)
+        if len(block.shape) == 1:
+            return _Damped(block.solved(damping_ratio), without, True)
+        return _Damped(_reached(pair, block, damping_ratio, mode), without, False)
+
+    return max((damped(pair) for pair in pairs_of(block.loop, block.shape)), key=lambda each: each.pair.gain)
+
+
+def _reached(pair: Pair, block: _Block, damping_ratio: float, mode: _SlowestMode) -> Pair:
+    """The pair followed to where it first has the ratio."""
     from scipy.optimize import brentq
 
-    high = guess
-    for _ in range(60):
-        if excess(high) > 0:
-            break
-        high *= 2
-    else:
-        raise IllPosedError(f"no δ_v up to {high:.3g} N s/m damps the slowest consensus mode by {damping_ratio:g}")
-    root = float(brentq(excess, 0.0, high, xtol=1e-12 * high, rtol=1e-12))
-    if abs(excess(root)) > 1e-6 * damping_ratio:
-        raise IllPosedError(
-            f"damping mixes the slowest consensus mode with others near δ_v = {root:.4g} N s/m, and its ratio leaps "
-            f"past {damping_ratio:g} there; a ratio a little smaller or larger has an answer"
-        )
-    return root
+    critical = 2 * np.sqrt(mode.stiffness) / mode.connectivity
+    most = _MOST * critical * max(damping_ratio, 1.0)
+    before = pair
+    for onward in course(pair, block.loop, critical * min(damping_ratio, 1.0) / 32):
+        if onward.damping_ratio >= damping_ratio:
+            excess = partial(_excess, damping_ratio, before, block)
+            return _known(before, block, float(brentq(excess, before.gain, onward.gain, rtol=1e-14)))
+        if onward.gain > most:
+            raise IllPosedError(f"no δ_v up to {most:.3g} N s/m damps the slowest consensus mode by {damping_ratio:g}")
+        before = onward
+    raise _mixed(before)
+
+
+def _excess(damping_ratio: float, before: Pair, block: _Block, delta_v: float) -> float:
+    """How far the ratio exceeds the one asked for."""
+    return _known(before, block, delta_v).damping_ratio - damping_ratio
+
+
+def _known(before: Pair, block: _Block, delta_v: float) -> Pair:
+    found = at(before, block.loop, delta_v)
+    if found is None:
+        raise _mixed(before)
+    return found
+
+
+def _mixed(before: Pair) -> IllPosedError:
+    return IllPosedError(
+        f"damping mixes the slowest consensus mode with others: from δ_v = {before.gain:.6g} N s/m on its eigenvalues, "
+        f"there of damping ratio {before.damping_ratio:.4g}, meet others or nearly so, and which are the mode's cannot "
+        "be told; ratios up to that one have an answer"
+    )
 
 
 def _slowest_mode(formation: LinearFormation, delta: float) -> _SlowestMode:
@@ -173,15 +255,3 @@ def _slowest_mode(formation: LinearFormation, delta: float) -> _SlowestMode:
 def _content(left: Array, right: Array) -> Array:
     result: Array = np.sum(left * right, axis=0)
     return result
-
-
-def _damping(loop: Array, mode: _SlowestMode) -> tuple[float, float]:
-    """Damping ratio and decay rate (1/s) of the eigenvalues whose displacements are most of all the mode's."""
-    values, vectors = np.linalg.eig(loop)
-    moving = vectors[positions(len(loop) // 4)]
-    whole = np.einsum("ik,ij,jk->k", moving.conj(), mode.mass, moving).real
-    share = np.sum(np.abs(mode.shape.T @ mode.mass @ moving) ** 2, axis=0) / np.maximum(whole, 1e-300)
-    pairs = mode.shape.shape[1]
-    chosen = values[np.argsort(-share, kind="stable")[: 2 * pairs]]
-    ratio = -chosen.real.mean() / np.exp(np.log(np.abs(chosen)).mean())
-    return float(ratio), float(-chosen.real.max())

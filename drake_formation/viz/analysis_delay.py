@@ -1,6 +1,7 @@
 """Figure of the delay margin: how it falls with δ, what δ_v buys, and how the two kinds of delay differ."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Literal, get_args
 
 import numpy as np
@@ -10,6 +11,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from drake_formation.analysis.delay import Delayed, delay_margin
 from drake_formation.analysis.linearization import LinearFormation
@@ -25,8 +27,11 @@ SMALLEST_DELTA = 1.0
 LARGEST_DELTA = 2e4
 """δ goes at least to the largest of the paper's gains (N/m)."""
 
-VALUES = 41
-"""Values of δ."""
+COARSE, FINE = 5, 20
+"""So many values of δ are always taken; between them as many as a curve needs, down to this part of its width."""
+
+STRAIGHT = 0.05
+"""A curve is straight where its middle is the mean of its ends to this share, on logarithmic axes."""
 
 STYLES: dict[Delayed, Literal["-", "--"]] = {"neighbour": "--", "relative": "-"}
 LABELS: dict[Delayed, str] = {"neighbour": "neighbours' states late", "relative": "the whole difference late"}
@@ -42,29 +47,60 @@ def delay_margin_against_delta(
 
     Args:
         formation: the linearized closed loop.
-        deltas: consensus gains δ (N/m), positive and ascending.
+        deltas: consensus gains δ (N/m), positive and ascending; if not given, as many as each curve needs.
         velocity_gains: velocity consensus gains δ_v (N s/m).
 
     Raises:
         IllPosedError: there is one robot, or the loop is unstable without delay.
     """
-    if deltas is None:
-        deltas = np.geomspace(SMALLEST_DELTA, max(LARGEST_DELTA, 2 * formation.delta), VALUES).tolist()
     if velocity_gains is None:
         velocity_gains = sorted({*VELOCITY_GAINS, formation.delta_v})
     figure = Figure(figsize=(9, 5), layout="constrained")
     axes = figure.subplots()
     colours = [to_hex(colormaps["viridis"](shade)) for shade in np.linspace(0, 0.85, len(velocity_gains))]
-    for delta_v, colour in zip(velocity_gains, colours, strict=True):
-        for of in get_args(Delayed):
-            axes.plot(deltas, margins(formation, of, deltas, delta_v), STYLES[of], color=colour, linewidth=1.5)
-    _mark_own(axes, formation)
+    largest = max(LARGEST_DELTA, 2 * formation.delta)
+    # Many small matrices: threads of the linear algebra would wait for one another most of the time.
+    with threadpool_limits(limits=1, user_api="blas"):
+        for delta_v, colour in zip(velocity_gains, colours, strict=True):
+            for of in get_args(Delayed):
+                if deltas is None:
+                    drawn, delays = curve(formation, of, delta_v, SMALLEST_DELTA, largest)
+                else:
+                    drawn, delays = np.array(deltas), margins(formation, of, deltas, delta_v)
+                axes.plot(drawn, delays, STYLES[of], color=colour, linewidth=1.5)
+        _mark_own(axes, formation)
     axes.set(xscale="log", yscale="log", xlabel="consensus gain δ (N/m)", ylabel="delay margin τ* (ms)")
     axes.set_title(f"{formation.scenario.name}: delay margin")
-    axes.set_xlim(deltas[0], deltas[-1])
+    axes.set_xlim(*((SMALLEST_DELTA, largest) if deltas is None else (deltas[0], deltas[-1])))
     axes.grid(alpha=0.3)
     _legend(axes, velocity_gains, colours)
     return figure
+
+
+def curve(formation: LinearFormation, of: Delayed, delta_v: float, low: float, high: float) -> tuple[Array, Array]:
+    """Values of δ (N/m) from low to high, and delay margins (ms) there; close together where the curve bends.
+
+    Every margin is exact; where it is straight on logarithmic axes few values stand for it.
+    """
+    found: dict[float, float] = {}
+
+    def at(place: float) -> float:
+        """Logarithm of the margin at a place from 0 (low) to 1 (high)."""
+        if place not in found:
+            found[place] = float(margins(formation, of, [low * (high / low) ** place], delta_v)[0])
+        return float(np.log(found[place]))
+
+    pending = list(pairwise(np.linspace(0.0, 1.0, COARSE).tolist()))
+    while pending:
+        left, right = pending.pop()
+        middle = (left + right) / 2
+        ends, between = np.array([at(left), at(right)]), at(middle)
+        missing = np.isnan([*ends, between])
+        straight = missing.all() if missing.any() else abs(between - ends.mean()) <= STRAIGHT
+        if not straight and right - left > 1 / FINE:
+            pending += [(left, middle), (middle, right)]
+    places = np.array(sorted(found))
+    return low * (high / low) ** places, np.array([found[place] for place in places.tolist()])
 
 
 def margins(formation: LinearFormation, of: Delayed, deltas: Sequence[float], delta_v: float) -> Array:

@@ -74,7 +74,17 @@ def test_the_answer_keeps_its_promise(scenario, ratio, share):
         assert (damped and -values.real.max() >= rate * (1 - 1e-6)) == (found.delta is not None)
 
 
-@pytest.mark.parametrize("request_", [{}, {"damping_ratio": 0.0}, {"damping_ratio": 1.1}, {"decay_rate": -1.0}])
+@pytest.mark.parametrize(
+    "request_",
+    [
+        {},
+        {"damping_ratio": 0.0},
+        {"damping_ratio": 1.1},
+        {"decay_rate": -1.0},
+        {"damping_ratio": 1e-300},
+        {"decay_rate": 1e-300},
+    ],
+)
 def test_no_request_is_refused(request_):
     with pytest.raises(IllPosedError):
         smallest_delta(formation_of("line"), **request_)

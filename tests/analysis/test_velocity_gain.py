@@ -1,8 +1,11 @@
 """δ_v for a damping ratio: the closed form, the eigenvalues and the diagram's own motion agree."""
 
+import re
+from itertools import combinations
+
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from strategies import scenarios
 
@@ -10,7 +13,7 @@ from drake_formation import load_scenario, simulate
 from drake_formation.analysis import linearize
 from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.velocity_gain import velocity_gain
-from drake_formation.scenario import resolve, with_overrides
+from drake_formation.scenario import Scenario, resolve, with_overrides
 
 UNEQUAL = {"robots.mass": [10.0, 20.0, 40.0, 80.0], "consensus.graph": "path", "springs.stiffness": 500.0}
 
@@ -30,24 +33,86 @@ def test_identical_robots_have_a_closed_form(name, robots, ratio):
     assert found.closed_form
 
 
-@given(scenario=scenarios(isotropic=True, robots=st.integers(2, 5)), ratio=st.floats(0.05, 0.95))
-@settings(max_examples=40, deadline=None)
-def test_eigenvalues_of_the_loop_have_the_ratio(scenario, ratio):
+STAR = Scenario.model_validate(
+    {
+        "name": "star",
+        "formation": {"shape": "line", "robots": 4, "side": 1.0, "heading": 0.0},
+        "robots": {"start": {"centre": [0, 0]}, "mass": [72.28, 21.12, 26.92, 57.36]},
+        "springs": {
+            "graph": [[1, 2], [1, 3], [1, 4], [2, 3], [3, 4]],
+            "law": "linear",
+            "stiffness": [859.26, 456.59, 341.79, 971.54, 944.26],
+            "damping": [43.849, 36.619, 18.183, 41.550, 41.041],
+        },
+        "tracking": {"Q": 3.4522, "R": 4.4737},
+        "consensus": {"graph": "star", "delta": 98.142},
+        "transport": {"goal": [20, 20], "duration": 1.0},
+    }
+)
+"""Damping turns a mode of this formation into two real eigenvalues while another still swings."""
+
+ratios_asked = st.floats(0.05, 0.95)
+several = st.integers(2, 5)
+
+
+def pairs_ratios(loop):
+    """Damping ratios of all pairs: of conjugates, and of every two real eigenvalues."""
+    values = np.linalg.eigvals(loop)
+    apparent = np.abs(values.imag) < 1e-6 * np.abs(values)  # a real one that occurs twice, to rounding
+    swinging, real = values[~apparent & (values.imag > 0)], values[apparent].real
+    return np.array(
+        [*(-swinging.real / np.abs(swinging)), *(-(a + b) / (2 * np.sqrt(a * b)) for a, b in combinations(real, 2))]
+    )
+
+
+@given(scenario=scenarios(robots=several) | scenarios(isotropic=True, robots=several), ratio=ratios_asked)
+@example(scenario=STAR, ratio=0.875)
+@settings(max_examples=60)
+def test_a_pair_of_eigenvalues_of_the_loop_has_the_ratio(scenario, ratio):
+    """There always is an answer: up to critical damping a pair meets another only by an unlikely chance."""
     formation = linearize(scenario)
-    try:
-        found = velocity_gain(formation, damping_ratio=ratio)
-    except IllPosedError as refusal:
-        assert "leaps" in str(refusal)  # noqa: PT017 - modes of unequal robots may trade places
-        assume(False)
-    values = np.linalg.eigvals(formation.closed_loop(found.delta, found.delta_v))
-    ratios = -values.real / np.abs(values)
-    assert np.abs(ratios - found.damping_ratio).min() < 1e-3
-    assert found.least_damping_ratio == pytest.approx(ratios.min())
+    found = velocity_gain(formation, damping_ratio=ratio)
+    loop = formation.closed_loop(found.delta, found.delta_v)
+    assert np.abs(pairs_ratios(loop) / found.damping_ratio - 1).min() < 1e-6
+    values = np.linalg.eigvals(loop)
+    assert found.least_damping_ratio == pytest.approx((-values.real / np.abs(values)).min())
     if found.delta_v > 0:
         assert found.damping_ratio == pytest.approx(ratio, rel=1e-6)
         assert found.without < ratio
     else:
         assert found.damping_ratio == found.without >= ratio * (1 - 1e-9)
+
+
+@given(scenario=scenarios(isotropic=True, robots=several), ratio=ratios_asked)
+@example(scenario=STAR, ratio=0.875)
+@settings(max_examples=20)
+def test_no_smaller_gain_damps_the_mode_as_much(scenario, ratio):
+    """Counted on the way: as many pairs have passed the ratio as did before the mode's own, and the mode's own."""
+    formation = linearize(scenario)
+    found = velocity_gain(formation, damping_ratio=ratio)
+    if found.delta_v == 0:
+        assert found.without >= ratio * (1 - 1e-9)
+        return
+    below, above = (
+        np.sum(pairs_ratios(formation.closed_loop(found.delta, factor * found.delta_v)) < ratio)
+        for factor in (1 - 1e-6, 1 + 1e-6)
+    )
+    assert below > above
+
+
+@given(scenario=scenarios(robots=several), ratio=st.floats(1.05, 50))
+@settings(max_examples=40)
+def test_beyond_critical_damping_there_is_an_answer_up_to_the_ratio_that_a_refusal_names(scenario, ratio):
+    """Two real eigenvalues of different pairs may meet; a refusal names the ratio reached before, above 1."""
+    formation = linearize(scenario)
+    try:
+        found = velocity_gain(formation, damping_ratio=ratio)
+    except IllPosedError as refusal:
+        reached = float(re.search(r"damping ratio ([^,]+),", str(refusal))[1])
+        assert 0.99 < reached < ratio
+        found = velocity_gain(formation, damping_ratio=0.99 * reached)
+    ratios = pairs_ratios(formation.closed_loop(found.delta, found.delta_v))
+    assert np.abs(ratios / found.damping_ratio - 1).min() < 1e-6
 
 
 def test_the_mode_is_the_one_of_the_algebraic_connectivity():
@@ -126,6 +191,9 @@ def test_more_damping_takes_more_gain():
             "one robot",
         ),
         (at_rest("line"), 0.0, "above 0"),
+        (at_rest("line"), -0.5, "above 0"),
+        (at_rest("line"), 1e300, "at most 1000"),
+        (at_rest("line"), float("inf"), "at most 1000"),
         (at_rest("line"), float("nan"), "above 0"),
     ],
 )

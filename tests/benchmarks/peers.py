@@ -1,6 +1,7 @@
 """The formation written by hand in numba, as one would without Drake: the yardstick for the compiled diagram.
 
-The right-hand side is one double loop over all pairs; the integrator is a plain adaptive Dormand-Prince pair.
+The right-hand side is one loop over all pairs, one force a pair; the integrator is a plain adaptive
+Dormand-Prince pair.
 """
 
 import math
@@ -44,17 +45,6 @@ def slope(x, p, dx):
         ex, ey = qx - goal[0] - slots[i, 0], qy - goal[1] - slots[i, 1]
         fx = -(gain[0, 0] * ex + gain[0, 1] * ey + gain[0, 2] * vx + gain[0, 3] * vy)
         fy = -(gain[1, 0] * ex + gain[1, 1] * ey + gain[1, 2] * vx + gain[1, 3] * vy)
-        for j in range(len(masses)):
-            if j != i:
-                rx, ry = qx - x[4 * j], qy - x[4 * j + 1]
-                wx, wy = vx - x[4 * j + 2], vy - x[4 * j + 3]
-                hx, hy = slots[i, 0] - slots[j, 0], slots[i, 1] - slots[j, 1]
-                square = rx * rx + ry * ry
-                rest = math.sqrt(hx * hx + hy * hy)
-                tension = stiffness[i, j] * (1 - rest / math.sqrt(square))
-                tension += damping[i, j] * (rx * wx + ry * wy) / square
-                fx -= tension * rx + delta * (rx - hx) + delta_v * wx
-                fy -= tension * ry + delta * (ry - hy) + delta_v * wy
         for k in range(len(obstacles)):
             ox, oy = qx - obstacles[k, 0], qy - obstacles[k, 1]
             distance = math.sqrt(ox * ox + oy * oy)
@@ -64,7 +54,25 @@ def slope(x, p, dx):
                 fx += force * ox
                 fy += force * oy
         dx[4 * i], dx[4 * i + 1] = vx, vy
-        dx[4 * i + 2], dx[4 * i + 3] = fx / masses[i], fy / masses[i]
+        dx[4 * i + 2], dx[4 * i + 3] = fx, fy
+    for i in range(len(masses)):
+        for j in range(i):
+            rx, ry = x[4 * i] - x[4 * j], x[4 * i + 1] - x[4 * j + 1]
+            wx, wy = x[4 * i + 2] - x[4 * j + 2], x[4 * i + 3] - x[4 * j + 3]
+            hx, hy = slots[i, 0] - slots[j, 0], slots[i, 1] - slots[j, 1]
+            square = rx * rx + ry * ry
+            rest = math.sqrt(hx * hx + hy * hy)
+            tension = stiffness[i, j] * (1 - rest / math.sqrt(square))
+            tension += damping[i, j] * (rx * wx + ry * wy) / square
+            fx = tension * rx + delta * (rx - hx) + delta_v * wx
+            fy = tension * ry + delta * (ry - hy) + delta_v * wy
+            dx[4 * i + 2] -= fx
+            dx[4 * i + 3] -= fy
+            dx[4 * j + 2] += fx
+            dx[4 * j + 3] += fy
+    for i in range(len(masses)):
+        dx[4 * i + 2] /= masses[i]
+        dx[4 * i + 3] /= masses[i]
 
 
 @njit(**NUMPY)

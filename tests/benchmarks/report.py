@@ -16,7 +16,7 @@ import sweeps
 import whole_runs
 
 README = Path(__file__).with_name("README.md")
-VERSIONS = ("drake", "numba", "numpy", "scipy", "control", "bdsim", "pathsim", "diffrax", "jax")
+VERSIONS = ("drake", "numba", "numpy", "scipy", "control", "bdsim", "pathsim", "diffrax", "heyoka", "casadi", "jax")
 
 PARTS: dict[str, Callable[[], None]] = {
     "blocks": bench.compare_derivatives,

@@ -1,4 +1,4 @@
-"""64 runs over (k, δ) beside diffrax's vmap, on the same processors: ``make bench``.
+"""64 runs over (k, δ) beside diffrax's vmap, heyoka and CasADi, on the same processors: ``make bench``.
 
 Each run is 60 s of transport from formation, its states wanted at every second, positions within 1e-4 m. A sweep of
 this project does more (metrics, the obstacle-free response, a database and a dataset), which is measured beside it.
@@ -70,6 +70,7 @@ def best(function):
 
 def compare(name, robots, processors):
     import diffrax_peer
+    import symbolic_peers
 
     runs, gains = Runs(name), list(zip(STIFFNESSES, DELTAS, strict=True))
     start = runs.diagram.CreateDefaultContext().get_continuous_state_vector().CopyToVector()
@@ -85,6 +86,9 @@ def compare(name, robots, processors):
     }
     states, baseline = min(peer.values(), key=lambda found: found[1])
     row("diffrax + vmap", states, baseline, baseline)
+    one = (runs.scenario, start, 60, STIFFNESSES, DELTAS)
+    row("heyoka, ensemble", *best(symbolic_peers.heyoka_many(*one)), baseline)
+    row("CasADi, CVODES, threads", *best(symbolic_peers.casadi_many(*one, processors)), baseline)
     chunks = [gains[k :: 4 * processors] for k in range(4 * processors)]
     order = np.argsort(np.concatenate([np.arange(64)[k :: 4 * processors] for k in range(4 * processors)]))
     with ProcessPoolExecutor(

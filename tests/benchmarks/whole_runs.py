@@ -2,7 +2,8 @@
 
 The job is the octagon in steel with δ = 2e4, 60 s from formation. The error is the largest of any robot's position at
 every second against a tight reference: the end alone would hide errors, since relative modes decay. Every peer gets the
-right-hand side written by hand in numba (diffrax: in JAX), is called as its users would, and runs once unmeasured.
+right-hand side written by hand in numba (diffrax: in JAX; heyoka and CasADi: in their symbols), is called as its users
+would, and runs once unmeasured.
 """
 
 import io
@@ -141,6 +142,17 @@ def by_diffrax(job):
     return job.diffrax()
 
 
+def by_symbolic(peer):
+    def run(job):
+        import symbolic_peers
+
+        if not hasattr(job, peer):
+            setattr(job, peer, getattr(symbolic_peers, peer)(job.scenario, job.start, 60))
+        return getattr(job, peer)()
+
+    return run
+
+
 RUNS: dict[str, Callable[[Job], np.ndarray]] = {
     "hand-written Dormand-Prince in numba": by_hand,
     "this diagram, engine `blocks`": by_blocks,
@@ -153,6 +165,8 @@ RUNS: dict[str, Callable[[Job], np.ndarray]] = {
     "bdsim, DOP853, numba right-hand side": by_bdsim,
     "pathsim, RKDP54, numba right-hand side": by_pathsim,
     "diffrax Dopri5, JAX right-hand side": by_diffrax,
+    "heyoka, Taylor series, steps to 0.02 s": by_symbolic("heyoka_one"),
+    "CasADi, CVODES": by_symbolic("casadi_one"),
 }
 
 

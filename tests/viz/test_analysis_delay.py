@@ -7,7 +7,7 @@ from drake_formation import load_scenario
 from drake_formation.analysis import linearize
 from drake_formation.analysis.delay import delay_margin
 from drake_formation.analysis.errors import IllPosedError
-from drake_formation.viz.analysis_delay import delay_margin_against_delta
+from drake_formation.viz.analysis_delay import curve, delay_margin_against_delta, margins
 
 DELTAS = [0.1, 10.0, 1e3]
 
@@ -59,3 +59,29 @@ def test_one_robot_is_refused():
     alone = {"formation": {"shape": "line", "robots": 1, "side": 1.0}, "robots.start": {"centre": [0.0, 0.0]}}
     with pytest.raises(IllPosedError):
         delay_margin_against_delta(linearize(load_scenario("line", overrides=alone)))
+
+
+SHAKEN = {
+    "robots.mass": [72.28, 21.12, 26.92, 57.36],
+    "springs.law": "linear",
+    "springs.graph": [[1, 2], [1, 3], [1, 4], [2, 3], [3, 4]],
+    "springs.stiffness": [859.26, 456.59, 341.79, 971.54, 944.26],
+    "springs.damping": [43.849, 36.619, 18.183, 41.550, 41.041],
+    "consensus.graph": "star",
+}
+
+
+@pytest.mark.parametrize("of", ["neighbour", "relative"])
+@pytest.mark.parametrize("delta_v", [0.0, 100.0])
+def test_a_curve_of_few_margins_is_the_curve(of, delta_v):
+    """Its points are margins, and so are those between, but in the few intervals where it jumps or ends."""
+    formation = linearize(load_scenario("quadrilateral", overrides=SHAKEN))
+    deltas, delays = curve(formation, of, delta_v, 1.0, 2e4)
+    assert (deltas[0], deltas[-1]) == pytest.approx((1.0, 2e4))
+    assert len(deltas) <= 30
+    between = np.sqrt(deltas[:-1] * deltas[1:])
+    np.testing.assert_allclose(delays[::5], margins(formation, of, deltas[::5].tolist(), delta_v))
+    drawn = np.sqrt(delays[:-1] * delays[1:])
+    exact = margins(formation, of, between.tolist(), delta_v)
+    near = np.isclose(drawn, exact, rtol=0.08, equal_nan=True)
+    assert np.sum(~near) <= 3

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from threadpoolctl import threadpool_limits
 
 from drake_formation.analysis.certificate import Certificate
-from drake_formation.analysis.errors import IllPosedError
+from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.output import PICTURES, SCENARIO, Written, written
 from drake_formation.places import Kind, Place
 from drake_formation.scenario import to_yaml
@@ -74,7 +74,7 @@ def _delay_margin(certificate: Certificate) -> "Figure":
 
 
 def _error_against_channels(certificate: Certificate) -> "Figure":
-    from drake_formation.analysis.topology import pareto_front
+    from drake_formation.analysis.topology.cheapest_graph import pareto_front
     from drake_formation.viz.analysis_topology import error_against_channels
 
     if certificate.formation.robots > FEW_ROBOTS and certificate.questions.consensus_error is None:

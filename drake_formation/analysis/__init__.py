@@ -8,33 +8,40 @@
     certificate = certify(load_scenario("line", overrides={"consensus.delta": 1e4}))
     certificate.stable, certificate.modes, certificate.sections["delay_relative"].delay_s
 
-Each question is a function of its own, of the ``LinearFormation`` that ``linearize`` makes of a scenario.
+Each question is a function of its own, of the ``LinearFormation`` that ``linearize`` makes of a scenario. The rooms,
+each with a map in its ``__init__``, import in one direction: ``linear`` ← ``stability``, ``network``, ``response`` ←
+``gains``, ``topology`` ← ``certificate``, which asks all of them, and ``report``, which puts it in words.
 """
 
 from drake_formation.analysis.certificate import Certificate, Questions, certify
-from drake_formation.analysis.consensus_gain import SmallestDelta, smallest_delta
-from drake_formation.analysis.delay import DelayMargin, delay_margin
-from drake_formation.analysis.design import DesignAdvice, design
-from drake_formation.analysis.distributed_lqr import DistributedLqr, distributed_lqr
-from drake_formation.analysis.disturbance import Disturbance, disturbance
-from drake_formation.analysis.edge_weights import AveragingWeights, FastestWeights, fastest_averaging, fastest_weights
-from drake_formation.analysis.errors import IllPosedError
-from drake_formation.analysis.force_limit import ForceLimited, largest_gain
-from drake_formation.analysis.graph_results import CheapestGraph, ParetoFront
-from drake_formation.analysis.linearization import NOT_COVERED, LinearFormation, linearize
-from drake_formation.analysis.local import LocalLoop, Margins, local_loops
-from drake_formation.analysis.loss import LossMargin, loss_margin
-from drake_formation.analysis.measures import ForceNoise, HandOff, Pulse, Vibration
-from drake_formation.analysis.modes import Mode, Modes, modes
-from drake_formation.analysis.obstacle_effect import ObstacleEffect, obstacle_effect
-from drake_formation.analysis.own_force import OwnForce, own_force, own_largest_gain
-from drake_formation.analysis.peak_force import PeakForce, peak_force
-from drake_formation.analysis.remedies import Remedy, remedies
-from drake_formation.analysis.rigidity import SpringLinearization, spring_linearization
-from drake_formation.analysis.sampled import longest_period
-from drake_formation.analysis.topology import cheapest_graph, pareto_front
-from drake_formation.analysis.tuning import Tuned, tune
-from drake_formation.analysis.velocity_gain import VelocityGain, velocity_gain
+from drake_formation.analysis.gains.compare import DesignAdvice, design
+from drake_formation.analysis.gains.distributed_lqr import DistributedLqr, distributed_lqr
+from drake_formation.analysis.gains.force_limited_gain import ForceLimited, largest_gain
+from drake_formation.analysis.gains.position_gain import SmallestDelta, smallest_delta
+from drake_formation.analysis.gains.start_limited_gain import OwnForce, own_force, own_largest_gain
+from drake_formation.analysis.gains.tuning import Tuned, tune
+from drake_formation.analysis.gains.velocity_gain import VelocityGain, velocity_gain
+from drake_formation.analysis.linear.errors import IllPosedError
+from drake_formation.analysis.linear.linearization import NOT_COVERED, LinearFormation, linearize
+from drake_formation.analysis.network.delay_margin import DelayMargin, delay_margin
+from drake_formation.analysis.network.loss_margin import LossMargin, loss_margin
+from drake_formation.analysis.network.sampled_data import longest_period
+from drake_formation.analysis.response.disturbance import Disturbance, disturbance
+from drake_formation.analysis.response.error_criteria import ForceNoise, HandOff, Pulse, Vibration
+from drake_formation.analysis.response.obstacle_effect import ObstacleEffect, obstacle_effect
+from drake_formation.analysis.response.peak_force import PeakForce, peak_force
+from drake_formation.analysis.stability.local_lqr import LocalLoop, Margins, local_loops
+from drake_formation.analysis.stability.modes import Mode, Modes, modes
+from drake_formation.analysis.stability.rigidity import SpringLinearization, spring_linearization
+from drake_formation.analysis.stability.stabilization import Remedy, remedies
+from drake_formation.analysis.topology.cheapest_graph import cheapest_graph, pareto_front
+from drake_formation.analysis.topology.optimal_weights import (
+    AveragingWeights,
+    FastestWeights,
+    fastest_averaging,
+    fastest_weights,
+)
+from drake_formation.analysis.topology.results import CheapestGraph, ParetoFront
 
 __all__ = [
     "NOT_COVERED",

@@ -11,10 +11,10 @@ from typing import Any
 import networkx as nx
 from threadpoolctl import threadpool_limits
 
-from drake_formation.analysis.errors import UNSOLVABLE, IllPosedError
-from drake_formation.analysis.linearization import NOT_COVERED, LinearFormation, linearize
-from drake_formation.analysis.modes import Modes, modes
-from drake_formation.analysis.remedies import Remedy, cause, remedies
+from drake_formation.analysis.linear.errors import UNSOLVABLE, IllPosedError
+from drake_formation.analysis.linear.linearization import NOT_COVERED, LinearFormation, linearize
+from drake_formation.analysis.stability.modes import Modes, modes
+from drake_formation.analysis.stability.stabilization import Remedy, cause, remedies
 from drake_formation.scenario import Scenario
 
 LONGEST_PERIOD = 10.0
@@ -201,19 +201,19 @@ def _plain(section: Any) -> Any:
 
 
 def _local(formation: LinearFormation, _: Questions) -> Any:
-    from drake_formation.analysis.local import local_loops
+    from drake_formation.analysis.stability.local_lqr import local_loops
 
     return local_loops(formation)
 
 
 def _springs(formation: LinearFormation, _: Questions) -> Any:
-    from drake_formation.analysis.rigidity import spring_linearization
+    from drake_formation.analysis.stability.rigidity import spring_linearization
 
     return spring_linearization(formation)
 
 
 def _smallest_delta(formation: LinearFormation, asked: Questions) -> Any:
-    from drake_formation.analysis.consensus_gain import smallest_delta
+    from drake_formation.analysis.gains.position_gain import smallest_delta
 
     if asked.damping_ratio is None and asked.decay_rate is None:
         return None
@@ -221,20 +221,20 @@ def _smallest_delta(formation: LinearFormation, asked: Questions) -> Any:
 
 
 def _delay_neighbour(formation: LinearFormation, _: Questions) -> Any:
-    from drake_formation.analysis.delay import delay_margin
+    from drake_formation.analysis.network.delay_margin import delay_margin
 
     return delay_margin(formation, of="neighbour")
 
 
 def _delay_relative(formation: LinearFormation, _: Questions) -> Any:
-    from drake_formation.analysis.delay import delay_margin
+    from drake_formation.analysis.network.delay_margin import delay_margin
 
     return delay_margin(formation, of="relative")
 
 
 def _loss(formation: LinearFormation, asked: Questions) -> Any:
-    from drake_formation.analysis.loss import PERIOD, loss_margin
-    from drake_formation.analysis.sampled import longest_period
+    from drake_formation.analysis.network.loss_margin import PERIOD, loss_margin
+    from drake_formation.analysis.network.sampled_data import longest_period
 
     if asked.period_s is not None:
         return loss_margin(formation, period_s=asked.period_s)
@@ -243,13 +243,13 @@ def _loss(formation: LinearFormation, asked: Questions) -> Any:
 
 
 def _disturbance(formation: LinearFormation, _: Questions) -> Any:
-    from drake_formation.analysis.disturbance import disturbance
+    from drake_formation.analysis.response.disturbance import disturbance
 
     return disturbance(formation)
 
 
 def _topology(formation: LinearFormation, asked: Questions) -> Any:
-    from drake_formation.analysis.topology import cheapest_graph
+    from drake_formation.analysis.topology.cheapest_graph import cheapest_graph
 
     if asked.consensus_error is None:
         return None
@@ -257,7 +257,7 @@ def _topology(formation: LinearFormation, asked: Questions) -> Any:
 
 
 def _design(formation: LinearFormation, asked: Questions) -> Any:
-    from drake_formation.analysis.design import design
+    from drake_formation.analysis.gains.compare import design
 
     if formation.robots < 2:
         raise IllPosedError("one robot has no consensus gains to choose")

@@ -10,10 +10,10 @@ from rich.table import Table
 from rich.text import Text
 
 from drake_formation.analysis.certificate import Certificate
-from drake_formation.analysis.linearization import NOT_COVERED
-from drake_formation.analysis.local import GUARANTEED_GAIN, GUARANTEED_PHASE_DEG
-from drake_formation.analysis.modes import Mode
-from drake_formation.analysis.shape import PARTS
+from drake_formation.analysis.linear.linearization import NOT_COVERED
+from drake_formation.analysis.linear.motion_subspaces import PARTS
+from drake_formation.analysis.stability.local_lqr import GUARANTEED_GAIN, GUARANTEED_PHASE_DEG
+from drake_formation.analysis.stability.modes import Mode
 
 MOST_ROWS = 16
 """Longer tables of modes are summed up by kind; the certificate has them all."""

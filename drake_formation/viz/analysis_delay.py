@@ -13,8 +13,8 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from drake_formation.analysis.delay import Delayed, delay_margin
-from drake_formation.analysis.linearization import LinearFormation
+from drake_formation.analysis.linear.linearization import LinearFormation
+from drake_formation.analysis.network.delay_margin import Delayed, delay_margin
 
 Array = NDArray[np.float64]
 

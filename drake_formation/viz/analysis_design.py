@@ -4,9 +4,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from drake_formation.analysis.hand_off_cost import HAND_OFF_ERROR, HandOffCost
-from drake_formation.analysis.linearization import LinearFormation
-from drake_formation.analysis.tuning import pareto, weight_of
+from drake_formation.analysis.gains.quadratic_cost import HAND_OFF_ERROR, HandOffCost
+from drake_formation.analysis.gains.tuning import pareto, weight_of
+from drake_formation.analysis.linear.linearization import LinearFormation
 
 DECADES, A_DECADE = 4, 3
 """Decades of δ along the curves, and designs in each; the gains of one a decade are written beside it."""

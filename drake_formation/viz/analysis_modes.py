@@ -9,9 +9,9 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from drake_formation.analysis.linearization import LinearFormation
-from drake_formation.analysis.modes import Mode, Modes, decay_limit
-from drake_formation.analysis.shape import PARTS
+from drake_formation.analysis.linear.linearization import LinearFormation
+from drake_formation.analysis.linear.motion_subspaces import PARTS
+from drake_formation.analysis.stability.modes import Mode, Modes, decay_limit
 
 STYLES = {
     "centre": ("o", "tab:blue"),
@@ -38,7 +38,7 @@ def mode_map(modes: Modes, title: str) -> Figure:
     """Every mode in the complex plane by kind, with its Laplacian eigenvalue; conjugates are left out.
 
     Args:
-        modes: from :func:`drake_formation.analysis.modes`.
+        modes: from :func:`drake_formation.analysis.stability.modes`.
         title: name of the scenario.
     """
     figure, axes = _plane([mode.eigenvalue for mode in modes.modes], f"{title}: modes")

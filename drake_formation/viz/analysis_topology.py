@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from drake_formation.analysis.graph_results import GraphPoint, ParetoFront
+from drake_formation.analysis.topology.results import GraphPoint, ParetoFront
 
 MOST_DRAWN = 12
 """Points up to which every graph is drawn."""
@@ -22,7 +22,7 @@ def error_against_channels(front: ParetoFront) -> Figure:
     """Consensus error of the best graph for every number of channels, with its Laplacian eigenvalues.
 
     Args:
-        front: from :func:`drake_formation.analysis.topology.pareto_front`.
+        front: from :func:`drake_formation.analysis.topology.cheapest_graph.pareto_front`.
     """
     figure = Figure(figsize=(8, 7), layout="constrained")
     few = len(front.points) <= MOST_DRAWN

@@ -5,8 +5,8 @@ import pytest
 
 from drake_formation import load_scenario
 from drake_formation.analysis import linearize
-from drake_formation.analysis.delay import delay_margin
-from drake_formation.analysis.errors import IllPosedError
+from drake_formation.analysis.linear.errors import IllPosedError
+from drake_formation.analysis.network.delay_margin import delay_margin
 from drake_formation.viz.analysis_delay import curve, delay_margin_against_delta, margins
 
 DELTAS = [0.1, 10.0, 1e3]

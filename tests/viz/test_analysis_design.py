@@ -5,8 +5,8 @@ import pytest
 
 from drake_formation import load_scenario
 from drake_formation.analysis import linearize
-from drake_formation.analysis.errors import IllPosedError
-from drake_formation.analysis.hand_off_cost import HandOffCost
+from drake_formation.analysis.gains.quadratic_cost import HandOffCost
+from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.viz.analysis_design import pareto_front
 
 

@@ -5,8 +5,8 @@ import pytest
 
 from drake_formation import load_scenario
 from drake_formation.analysis import linearize
-from drake_formation.analysis.graph_results import GraphPoint, ParetoFront
-from drake_formation.analysis.topology import ForceNoise, pareto_front
+from drake_formation.analysis.topology.cheapest_graph import ForceNoise, pareto_front
+from drake_formation.analysis.topology.results import GraphPoint, ParetoFront
 from drake_formation.viz.analysis_topology import MOST_DRAWN, error_against_channels
 
 

@@ -1,0 +1,206 @@
+"""The closed loop about the formation at rest, linearized by Drake from the built diagram.
+
+Everything in :mod:`drake_formation.analysis` starts here; no equation of motion is written a second time. What the
+linearization cannot speak of is listed in ``NOT_COVERED``.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from pydrake.autodiffutils import ExtractGradient, InitializeAutoDiff
+from pydrake.systems.framework import Context, Diagram
+from pydrake.systems.primitives import Linearize
+
+from drake_formation.analysis.linear.assumptions import require_linear_consensus
+from drake_formation.analysis.linear.errors import IllPosedError
+from drake_formation.diagram import build_diagram
+from drake_formation.formation.formation import Formation
+from drake_formation.parameters import find_block, robot_name
+from drake_formation.scenario import Scenario, resolve, with_overrides
+from drake_formation.systems.templates import CONVERTING
+
+Array = NDArray[np.float64]
+
+STATES = 4
+"""States of a robot: x, y (m) and their rates (m/s), in the world frame."""
+
+NOT_COVERED = (
+    "avoidance: every number is for a formation outside the sensing range of all obstacles",
+    "large displacements: springs are linearized about the formation at rest; a rotated formation has other ones",
+    "saturation: forces are taken as unlimited",
+    "the hand-off: the object is in place",
+)
+"""What a linearization about the formation at rest says nothing about."""
+
+
+@dataclass(frozen=True)
+class LinearFormation:
+    """ẋ = A x + B f about the formation at rest at its goal; x is the deviation, robot after robot.
+
+    The consensus law is linear in its gains, so A is kept in parts: ``A(δ, δ_v) = tracking + springs + δ per_delta +
+    δ_v per_delta_v``.
+
+    Attributes:
+        scenario: what was linearized: in transport, at its goal, without obstacles.
+        tracking: plants with their local controllers alone, shape (4N, 4N).
+        springs: what the object adds, shape (4N, 4N).
+        per_delta: what consensus adds for every N/m of δ, shape (4N, 4N).
+        per_delta_v: what consensus adds for every N s/m of δ_v, shape (4N, 4N).
+        B: accelerations from forces on the robots (N), x and y robot after robot, shape (4N, 2N).
+    """
+
+    scenario: Scenario
+    tracking: Array
+    springs: Array
+    per_delta: Array
+    per_delta_v: Array
+    B: Array
+
+    @property
+    def resolved(self) -> Formation:
+        """The scenario resolved."""
+        return resolve(self.scenario)
+
+    @property
+    def robots(self) -> int:
+        """Number of robots N."""
+        return len(self.tracking) // STATES
+
+    @property
+    def delta(self) -> float:
+        """The scenario's consensus gain δ (N/m)."""
+        return float(self.resolved.parts["coordination"][0].config.delta)
+
+    @property
+    def delta_v(self) -> float:
+        """The scenario's velocity consensus gain δ_v (N s/m)."""
+        return float(self.resolved.parts["coordination"][0].config.delta_v)
+
+    @cached_property
+    def A(self) -> Array:
+        """The closed loop with the scenario's gains, shape (4N, 4N)."""
+        return self.closed_loop(self.delta, self.delta_v)
+
+    @cached_property
+    def laplacian(self) -> Array:
+        """Laplacian of the communication graph, shape (N, N)."""
+        laplacian: Array = self.resolved.channels.laplacian
+        return laplacian
+
+    def closed_loop(self, delta: float, delta_v: float) -> Array:
+        """The closed loop with other consensus gains (N/m, N s/m), shape (4N, 4N)."""
+        return self.tracking + self.springs + self.consensus(delta, delta_v)
+
+    def consensus(self, delta: float, delta_v: float) -> Array:
+        """What consensus with some gains (N/m, N s/m) adds to A, shape (4N, 4N)."""
+        result: Array = delta * self.per_delta + delta_v * self.per_delta_v
+        return result
+
+
+def own(matrix: Array) -> Array:
+    """The part of a (4N, 4N) matrix by which every robot acts on itself; the rest is what its neighbours do."""
+    robots = len(matrix) // STATES
+    result: Array = matrix * np.kron(np.eye(robots), np.ones((STATES, STATES)))
+    return result
+
+
+def linearize(scenario: Scenario) -> LinearFormation:
+    """Linearize a scenario's diagram about its formation at rest at the goal.
+
+    Args:
+        scenario: what to analyse; its start, phases, reference and obstacles play no part.
+
+    Raises:
+        ScenarioError: the scenario is wrong.
+        IllPosedError: its parts are not those that the analysis is of.
+    """
+    rest = at_rest(scenario)
+    formation = resolve(rest)
+    require_linear_consensus(formation)
+    diagram = build_diagram(rest)
+    context = diagram.CreateDefaultContext()
+    _require_states(diagram, formation)
+    state_matrix = StateMatrix(diagram)
+    phase = diagram.GetSubsystemByName("phase").GetMyMutableContextFromRoot(context)
+
+    def with_gains(delta: float, delta_v: float, *, object_in_place: bool = False) -> Array:
+        # Past the checks: robots that do not all talk may be linearized, only not made to agree.
+        for i in range(formation.robots):
+            block = find_block(diagram, f"{robot_name(i)}/consensus").GetMyMutableContextFromRoot(context)
+            block.get_mutable_numeric_parameter(0).SetFromVector([delta, delta_v])
+        phase.get_mutable_numeric_parameter(0).SetFromVector([float(object_in_place)])
+        return state_matrix.at(context)
+
+    springs = with_gains(0.0, 0.0, object_in_place=True)
+    tracking = with_gains(0.0, 0.0)
+    return LinearFormation(
+        scenario=rest,
+        tracking=tracking,
+        springs=springs - tracking,
+        per_delta=with_gains(1.0, 0.0) - tracking,
+        per_delta_v=with_gains(0.0, 1.0) - tracking,
+        B=_force_matrix(diagram, rest),
+    )
+
+
+def at_rest(scenario: Scenario) -> Scenario:
+    """The scenario as it is linearized: in formation at the goal from the start, in transport, without obstacles."""
+    return with_overrides(
+        scenario,
+        {
+            "aggregation.duration": 0.0,
+            "robots.start": {"centre": list(scenario.transport.goal)},
+            "transport.reference": {"kind": "set_point"},
+            "avoidance.obstacles": [],
+            "avoidance.sensing": "in_range",
+        },
+    )
+
+
+class StateMatrix:
+    """∂ẋ/∂x of a diagram, as Drake's ``Linearize`` gives it; but the diagram is converted once for all Contexts.
+
+    Args:
+        diagram: a diagram without input ports, in double.
+    """
+
+    def __init__(self, diagram: Diagram) -> None:
+        with CONVERTING:
+            self._diagram = diagram.ToAutoDiffXd()
+        self._context = self._diagram.CreateDefaultContext()
+
+    def at(self, context: Context) -> Array:
+        """The matrix about a Context's time, state and parameters, shape (states, states)."""
+        self._context.SetTimeStateAndParametersFrom(context)
+        state = context.get_continuous_state_vector().CopyToVector()
+        self._context.SetContinuousState(InitializeAutoDiff(state).ravel())
+        slope = self._diagram.EvalTimeDerivatives(self._context).CopyToVector()
+        result: Array = ExtractGradient(slope.reshape(-1, 1))
+        return result
+
+
+def _require_states(diagram: Diagram, formation: Formation) -> None:
+    """Refuse parts with states beyond position and velocity, which no matrix here has rows for."""
+    states = diagram.num_continuous_states()
+    if states != STATES * formation.robots or diagram.num_discrete_state_groups():
+        raise IllPosedError(f"the parts have states of their own ({states} in all); what is certified has four a robot")
+
+
+def _force_matrix(diagram: Diagram, scenario: Scenario) -> Array:
+    """Each plant's own force port, block by block: the robots' forces are wired to their controllers."""
+    robots = resolve(scenario).robots
+    whole = diagram.CreateDefaultContext()
+    result = np.zeros((STATES * robots, 2 * robots))
+    for i in range(robots):
+        plant = find_block(diagram, f"{robot_name(i)}/plant")
+        inside = plant.GetMyContextFromRoot(whole)
+        alone = plant.CreateDefaultContext()
+        for k in range(plant.num_input_ports()):
+            port = plant.get_input_port(k)
+            port.FixValue(alone, port.Eval(inside))
+        force, state = plant.GetInputPort("force").get_index(), plant.GetOutputPort("state").get_index()
+        linear = Linearize(plant, alone, force, state)
+        result[STATES * i : STATES * (i + 1), 2 * i : 2 * i + 2] = linear.B()
+    return result

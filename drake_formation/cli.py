@@ -203,6 +203,7 @@ def reproduce(
     """Rerun the paper's study and write a report: tables, figures and claims."""
     from drake_formation.paper.reproduce import reproduce as run_study
     from drake_formation.simulation import SimulationError
+    from drake_formation.sweep import SweepStoppedError
 
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed} / {task.total} runs"))
     with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True), transient=True) as progress:
@@ -211,7 +212,7 @@ def reproduce(
             run_study(out, only or (), lambda done, total: progress.update(task, completed=done, total=total))
         except ValueError as error:
             _stop(str(error), WRONG_INPUT)
-        except SimulationError as error:
+        except (SimulationError, SweepStoppedError) as error:
             _stop(str(error), FAILED_RUN)
     console.print(f"Report in {out / 'report.html'}, tables in {out / 'tables.csv'}.", soft_wrap=True)
 

@@ -235,6 +235,7 @@ def reproduce(
     from drake_formation.paper.reproduce import reproduce as run_study
     from drake_formation.places import OutputError
     from drake_formation.simulation import SimulationError
+    from drake_formation.sweep import SweepStoppedError
 
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed} / {task.total} runs"))
     with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True), transient=True) as progress:
@@ -243,7 +244,7 @@ def reproduce(
             written = run_study(out, only or (), lambda done, total: progress.update(task, completed=done, total=total))
         except (OutputError, ValueError) as error:
             stop(str(error), WRONG_INPUT)
-        except SimulationError as error:
+        except (SimulationError, SweepStoppedError) as error:
             stop(str(error), FAILED_RUN)
     where = f"Report in {written.folder / 'report.html'}, tables in {written.folder / 'tables.csv'}."
     say("\n".join([*written.remarks(), where]))

@@ -1,18 +1,21 @@
 """Results of the study's runs, kept on disk so that no run is made twice."""
 
 import hashlib
-import multiprocessing
+import json
 import os
 import tempfile
 from collections.abc import Callable, Iterable
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from importlib.metadata import version
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from pathlib import Path
 
 import xarray as xr
 
-from drake_formation.scenario import Scenario, resolve, to_yaml
-from drake_formation.simulation import simulate
+from drake_formation.lowering.errors import LoweringError
+from drake_formation.scenario import Scenario, ScenarioError, resolve, to_yaml
+from drake_formation.simulation import SimulationError, simulate
+from drake_formation.sweep.errors import SweepStoppedError
+from drake_formation.sweep.processes import Processes, WorkerDiedError
+from drake_formation.sweep.work import versions
 
 # Drake 1.51 leaks Python systems; workers are replaced before that matters.
 RUNS_PER_WORKER = 32
@@ -21,7 +24,8 @@ RUNS_PER_WORKER = 32
 class Store:
     """Runs by scenario, in a folder.
 
-    A run is found again by its resolved scenario, the engine, and the versions of this package and of Drake.
+    A run is found again by its resolved scenario, the engine, and the software that made it, down to the code of this
+    package: other code makes the runs anew, beside the earlier ones, and a report never mixes them.
 
     Args:
         folder: where; made if missing.
@@ -34,15 +38,24 @@ class Store:
         self._engine = engine
 
     def __getitem__(self, scenario: Scenario) -> xr.Dataset:
-        """The result of a scenario, run now if it has not been."""
+        """The result of a scenario, run now if it has not been, or if its file is damaged.
+
+        Raises:
+            SweepStoppedError: it cannot be made, or not kept.
+        """
         path = self.path(scenario)
-        if not path.exists():
-            run_to_file(scenario, path, self._engine)
-        return xr.load_dataset(path)
+        if path.exists():
+            try:
+                return xr.load_dataset(path, engine="netcdf4")
+            except (OSError, RuntimeError, ValueError, KeyError, IndexError):
+                pass
+        if problem := attempt(scenario, path, self._engine):
+            raise SweepStoppedError(f"{path}: {problem}")
+        return xr.load_dataset(path, engine="netcdf4")
 
     def path(self, scenario: Scenario) -> Path:
         """File of a scenario's result."""
-        text = "\n".join([to_yaml(scenario), version("drake-formation"), version("drake"), self._engine])
+        text = "\n".join([to_yaml(scenario), json.dumps(versions()), self._engine])
         return self._folder / f"{scenario.name}-{hashlib.sha256(text.encode()).hexdigest()[:16]}.nc"
 
     def missing(self, scenarios: Iterable[Scenario]) -> list[Scenario]:
@@ -56,18 +69,49 @@ class Store:
         Args:
             scenarios: what is needed.
             done: called after each run.
+
+        Raises:
+            SweepStoppedError: a run cannot be made, or not kept; those that were finished are.
         """
         missing = self.missing(scenarios)
         workers = os.cpu_count() or 1
-        # A new pool for every batch: the executor's own max_tasks_per_child deadlocks on some Pythons (gh-115634).
         for first in range(0, len(missing), workers * RUNS_PER_WORKER):
             batch = missing[first : first + workers * RUNS_PER_WORKER]
-            context = multiprocessing.get_context("spawn")
-            with ProcessPoolExecutor(min(len(batch), workers), mp_context=context) as pool:
-                runs = [pool.submit(run_to_file, scenario, self.path(scenario), self._engine) for scenario in batch]
-                for run in as_completed(runs):
-                    run.result()
-                    done()
+            with Processes(min(len(batch), workers)) as pool:
+                self._run_batch(batch, pool, done)
+
+    def _run_batch(self, batch: Iterable[Scenario], pool: Processes, done: Callable[[], None]) -> None:
+        def begin(scenario: Scenario) -> "Future[str | None]":
+            return pool.call(attempt, scenario, self.path(scenario), self._engine)
+
+        waiting = {begin(scenario): scenario for scenario in batch}
+        retried: set[Path] = set()
+        while waiting:
+            for future in wait(waiting, return_when=FIRST_COMPLETED).done:
+                scenario = waiting.pop(future)
+                path = self.path(scenario)
+                try:
+                    problem = future.result()
+                except WorkerDiedError as death:
+                    if path not in retried:
+                        retried.add(path)
+                        waiting[begin(scenario)] = scenario
+                        continue
+                    problem = str(death)
+                if problem:
+                    raise SweepStoppedError(f"{path}: {problem}")
+                done()
+
+
+def attempt(scenario: Scenario, path: Path, engine: str) -> str | None:
+    """Run a scenario to a file; gives why that cannot be, as not every error can be sent from a worker."""
+    try:
+        run_to_file(scenario, path, engine)
+    except (SimulationError, ScenarioError, LoweringError, OSError) as error:
+        return str(error)
+    except Exception as error:
+        return f"{type(error).__name__}: {error}"
+    return None
 
 
 def run_to_file(scenario: Scenario, path: Path, engine: str) -> None:

@@ -1,6 +1,7 @@
 """Axes with their values worked out: positions along a dimension, and what each position sets."""
 
 import json
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -70,6 +71,22 @@ def resolve(model: AxisModel, place: Path) -> tuple[Axis | None, list[Fault]]:
     return (None, faults) if faults else (_MAKERS[model.kind](model, place), [])
 
 
+def extent(model: AxisModel) -> tuple[int, int, str]:
+    """How large an axis would be: its positions, the fields along it, and the key that says so; nothing is made."""
+    match model:
+        case GridAxis():
+            counts = {"values": len(model.values or ())}
+            counts |= {name: steps[2] for name in ("linspace", "logspace") if (steps := getattr(model, name))}
+            source = max(counts, key=counts.__getitem__)
+            return counts[source], 1, source
+        case ZipAxis():
+            return max(map(len, model.values.values())), len(model.values), "values"
+        case ListAxis():
+            return len(model.points), len({path for point in model.points for path in point.set}), "points"
+        case RandomAxis():
+            return model.count, len(model.draw), "count"
+
+
 def text(value: Any) -> str:
     """What to call a value: names as they are, everything else as in YAML's flow style."""
     return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False, default=str)
@@ -137,6 +154,8 @@ def _check_grid(model: GridAxis, place: Path) -> Iterator[Fault]:
     if model.values:
         yield from _unique(list(model.values), (*place, "values"))
     steps = model.linspace or model.logspace
+    if model.linspace:
+        yield from _check_difference(*model.linspace[:2], (*place, "linspace"))
     if steps and steps[2] > 1 and steps[0] == steps[1]:
         yield Fault((*place, given[0]), "all values are the same", shown(steps), "first and last that differ")
     yield from _check_labels(model.labels, steps[2] if steps else len(model.values or ()), place)
@@ -173,8 +192,15 @@ def _check_random(model: RandomAxis, place: Path) -> Iterator[Fault]:
         elif first > second or (given[0] == "loguniform" and first <= 0):
             allowed = "0 < low <= high" if given[0] == "loguniform" else "low <= high"
             yield Fault((*here, given[0]), "out of range", shown_values, allowed)
+        elif given[0] == "uniform":
+            yield from _check_difference(first, second, (*here, "uniform"))
         elif given[0] == "integers" and not -(2**63) <= first <= second < 2**63:
             yield Fault((*here, given[0]), "out of range", shown_values, "integers of 64 bits")
+
+
+def _check_difference(first: float, last: float, place: Path) -> Iterator[Fault]:
+    if not math.isfinite(last - first):
+        yield Fault(place, "out of range", shown([first, last]), "numbers whose difference is one")
 
 
 def _check_labels(labels: tuple[str, ...] | None, count: int, place: Path) -> Iterator[Fault]:

@@ -41,12 +41,14 @@ def dimensions(axes: Sequence[Axis]) -> tuple[str, ...]:
 
 
 def name_faults(axes: Sequence[Axis]) -> Iterator[Fault]:
-    """Names of dimensions that stand for something else already."""
-    seen = set(TAKEN)
+    """Names of dimensions that stand for something else already, be it a field's coordinate."""
+    names = _field_names(axes)
+    others = Counter(names[path] for axis in axes if axis.kind != "grid" for path in axis.columns)
+    seen = TAKEN | set(others)
     for axis, name in zip(axes, dimensions(axes), strict=True):
         if name in seen:
             yield Fault((*axis.place, "name"), "taken by another part of the dataset", name, "another name")
-        seen.add(name)
+        seen = seen | {name}
 
 
 def coordinates(axes: Sequence[Axis]) -> list[Coordinate]:
@@ -94,6 +96,6 @@ def _array(values: Sequence[Any]) -> np.ndarray[Any, Any]:
     kinds = {type(value) for value in values}
     if kinds == {int} and all(abs(value) < 2**63 for value in values):
         return np.array(values, dtype=np.int64)
-    if kinds <= {int, float}:
+    if kinds <= {int, float} and float in kinds:
         return np.array([float(value) for value in values])
     return np.array([text(value) for value in values], dtype=object)

@@ -17,7 +17,7 @@ from drake_formation.sweep.definition import Sweep
 from drake_formation.sweep.quantities import metric_attributes
 from drake_formation.sweep.schema import SERIES
 from drake_formation.sweep.store import Store
-from drake_formation.sweep.work import Outcome
+from drake_formation.sweep.work import CODE, Outcome
 
 FAILURES = "failures.csv"
 
@@ -40,10 +40,22 @@ def write_dataset(path: Path, sweep: Sweep, store: Store, made_with: dict[str, s
         sweep: the sweep.
         store: its runs.
         made_with: engine and versions, for the attributes.
+
+    Raises:
+        OSError, RuntimeError: the file cannot be written.
+        SweepError: the store cannot be read.
     """
     partial = path.with_name(f".{path.name}.partial")
+    try:
+        _write(partial, sweep, store, made_with)
+        partial.replace(path)
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def _write(path: Path, sweep: Sweep, store: Store, made_with: dict[str, str]) -> None:
     shapes = store.shapes()
-    with netCDF4.Dataset(partial, "w") as file:
+    with netCDF4.Dataset(path, "w") as file:
         file.set_fill_off()
         _write_attributes(file, sweep, made_with)
         swept = dimensions(sweep.axes)
@@ -57,7 +69,6 @@ def write_dataset(path: Path, sweep: Sweep, store: Store, made_with: dict[str, s
         numbers = max(1, sum(math.prod(shape) for shape in shapes.values()))
         for place, first, shape in blocks(sweep.shape, max(1, _BLOCK // numbers)):
             _write_block(file, place, first, shape, store, shapes)
-    partial.replace(path)
 
 
 def write_failures(folder: Path, sweep: Sweep, store: Store) -> None:
@@ -106,7 +117,8 @@ def _write_attributes(file: Any, sweep: Sweep, made_with: dict[str, str]) -> Non
     file.engine = made_with["engine"]
     for name, value in made_with.items():
         if name not in ("sweep", "engine"):
-            file.setncattr(f"{name.replace('-', '_')}_version", value)
+            ending = "" if name == CODE else "_version"
+            file.setncattr(f"{name.replace('-', '_')}{ending}", value)
 
 
 def _write_inner_coordinates(file: Any, sweep: Sweep, shapes: dict[str, tuple[int, ...]]) -> None:

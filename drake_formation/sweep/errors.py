@@ -2,7 +2,7 @@
 
 
 class SweepError(RuntimeError):
-    """A sweep that cannot be begun as asked; nothing was run."""
+    """A sweep that cannot be carried out as asked, or not in that folder; runs that were finished before are kept."""
 
 
 class SweepStoppedError(RuntimeError):

@@ -9,6 +9,9 @@ from typing import Protocol, Self
 from drake_formation.sweep.errors import SweepError
 from drake_formation.sweep.work import Chunk, Report, run_chunk
 
+MOST_WORKERS = 1024
+"""Processes on one machine, each an interpreter of some hundred megabytes."""
+
 
 class Executor(Protocol):
     """Runs chunks; a context manager, whose end ends its workers."""
@@ -86,8 +89,11 @@ def choose(name: str, workers: int | None, scheduler: str | None) -> Executor:
 def _processes(workers: int | None) -> Executor:
     from drake_formation.sweep.processes import Processes
 
-    if workers is not None and workers < 1:
-        raise SweepError(f"{workers} workers; give at least one")
-    return Processes(
-        workers or len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    )
+    if workers is not None and not 1 <= workers <= MOST_WORKERS:
+        raise SweepError(f"{workers} workers; give at least one and at most {MOST_WORKERS}")
+    return Processes(workers or _processors())
+
+
+def _processors() -> int:
+    """How many this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

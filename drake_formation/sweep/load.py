@@ -1,11 +1,12 @@
 """Loading sweeps: the shipped ones by name, others from files or mappings; what is wrong is found before any run."""
 
+import json
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from drake_formation.config.errors import dotted, nearest, shown
+from drake_formation.config.errors import nearest, shown
 from drake_formation.scenario import Fault, ScenarioError, shipped_scenarios
 from drake_formation.scenario.load import find_file
 from drake_formation.scenario.overrides import apply, plain
@@ -15,10 +16,8 @@ from drake_formation.sweep.axes import Axis, resolve
 from drake_formation.sweep.coordinates import name_faults
 from drake_formation.sweep.definition import Sweep, probes
 from drake_formation.sweep.faults import parsed
+from drake_formation.sweep.limits import series_faults, size_faults, value_faults
 from drake_formation.sweep.schema import SweepFile
-
-MOST_POINTS = 10_000_000
-"""A grid of more points is a slip, not a plan."""
 
 
 def load_sweep(source: str | Path | Mapping[str, Any]) -> Sweep:
@@ -39,17 +38,19 @@ def load_sweep(source: str | Path | Mapping[str, Any]) -> Sweep:
         ScenarioError: with all faults found, each with file and line.
     """
     if isinstance(source, Mapping):
-        document, folder, text = Document("the sweep", plain(source)), Path(), ""
+        document, folder, text = _document(source), Path(), ""
     else:
         path = find_file(source, shipped_sweeps(), "sweep")
         text, folder = read_text(path), path.parent
         document = parse(text, str(path))
+    if faults := list(value_faults(document.data)):
+        raise document.attributed(faults)
     model = parsed(document)
+    if faults := list(size_faults(model.axes)):
+        raise document.attributed(faults)
     axes = _axes(document, model)
     base = _base(document, model, folder)
     sweep = Sweep(model.name, model.description, text, base, axes, model.trajectories)
-    if len(sweep) > MOST_POINTS:
-        raise document.attributed([Fault(("axes",), f"{len(sweep)} points", allowed=f"at most {MOST_POINTS}")])
     _check(sweep, document)
     return sweep
 
@@ -58,6 +59,17 @@ def shipped_sweeps() -> dict[str, Path]:
     """Files of the sweeps that come with the package, by name."""
     folder = next(iter(shipped_scenarios().values())).parent / "sweeps"
     return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
+
+
+def _document(source: Mapping[str, Any]) -> Document:
+    """What stands in a mapping from Python, which may hold anything."""
+    document = Document("the sweep", {})
+    try:
+        data = plain(source)
+        json.dumps(data, default=str)  # checks the keys, and that nothing contains itself
+    except (RecursionError, TypeError, ValueError) as error:
+        raise document.attributed([Fault((), f"not plain data: {error}")]) from error
+    return replace(document, data=data)
 
 
 def _axes(document: Document, model: SweepFile) -> tuple[Axis, ...]:
@@ -71,21 +83,28 @@ def _axes(document: Document, model: SweepFile) -> tuple[Axis, ...]:
 
 def _overlaps(axes: tuple[Axis, ...]) -> Iterator[Fault]:
     """A field that two columns set, or set one within the other: which came last would decide."""
-    seen: list[tuple[str, ...]] = []
+    setters: dict[tuple[str, ...], str] = {}
+    around: dict[tuple[str, ...], str] = {}
     for axis in axes:
         for path in axis.columns:
             keys = tuple(path.split("."))
-            for other in seen:
-                if keys[: len(other)] == other or other[: len(keys)] == keys:
-                    yield Fault(axis.place, f"{path} and {dotted(other)} both set the same field")
-            seen.append(keys)
+            prefixes = [keys[:length] for length in range(1, len(keys) + 1)]
+            others = [setters[prefix] for prefix in prefixes if prefix in setters]
+            others += [around[keys]] if keys in around else []
+            for other in dict.fromkeys(others):
+                yield Fault(axis.place, f"{path} and {other} both set the same field")
+            setters[keys] = path
+            around |= dict.fromkeys(prefixes, path)
 
 
 def _base(document: Document, model: SweepFile, folder: Path) -> Document:
     """The base scenario with the sweep's own values set in it, said to stand where the sweep file says them."""
     origins = {path: document.origin(("set", path)) for path in model.set}
     try:
-        base = apply(_scenario_document(document, model.scenario, folder), model.set)
+        base = _scenario_document(document, model.scenario, folder)
+        if faults := list(value_faults(base.data)):
+            raise base.attributed(faults)
+        base = apply(base, model.set)
     except ScenarioError as error:
         raise ScenarioError(_placed(error.faults, origins)) from None
     names = {f"overrides[{path!r}]": origin for path, origin in origins.items()}
@@ -99,7 +118,13 @@ def _scenario_document(document: Document, scenario: str | dict[str, Any], folde
         return Document(document.name, scenario, origins)
     shipped = shipped_scenarios()
     path = folder / scenario
-    if path.is_file():
+    try:
+        exists = path.is_file()
+    except (OSError, ValueError) as error:
+        reason = (isinstance(error, OSError) and error.strerror) or str(error)
+        fault = Fault(("scenario",), f"not a usable path: {reason}", shown(scenario))
+        raise document.attributed([fault]) from error
+    if exists:
         return read(path)
     if scenario in shipped:
         return read(shipped[scenario])
@@ -127,12 +152,15 @@ def _check(sweep: Sweep, document: Document) -> None:
             wrong |= {str(fault): fault for fault in _placed(error.faults, origins)}
             continue
         try:
-            validate(point)
+            scenario = validate(point)
             sound = True
         except ScenarioError as error:
             # Pydantic is the cause where a single value is wrong; nothing is where the combination is.
             found = combinations if error.__cause__ is None else wrong
             found |= {str(fault): fault for fault in _placed(error.faults, origins)}
+            continue
+        if large := list(series_faults(sweep.trajectories, scenario, len(sweep))):
+            raise document.attributed(large)
     if wrong or not sound:
         raise ScenarioError((wrong or combinations).values())
 

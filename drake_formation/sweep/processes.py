@@ -1,18 +1,21 @@
-"""Worker processes on this machine, each with a pipe of its own, so that one that dies takes only its chunk along."""
+"""Worker processes on this machine, each with a pipe of its own, so that one that dies takes only its call along."""
 
 import os
 import pickle
 import subprocess
 import sys
 import threading
+from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Any, Self, TypeVar
 
 import drake_formation
 from drake_formation.sweep.errors import SweepStoppedError
-from drake_formation.sweep.work import Chunk, Report
+from drake_formation.sweep.work import Chunk, Report, run_chunk
+
+T = TypeVar("T")
 
 BUILDS_PER_WORKER = 256
 """Drake 1.51 leaks the Python systems of every diagram that was built; a worker is replaced before that matters."""
@@ -24,7 +27,7 @@ ONE_THREAD = dict.fromkeys(
 
 
 class WorkerDiedError(RuntimeError):
-    """A worker process ended while it had a chunk."""
+    """A worker process ended while it had something to do."""
 
 
 class Processes:
@@ -57,7 +60,11 @@ class Processes:
 
     def submit(self, chunk: Chunk) -> "Future[Report]":
         """Hand out a chunk."""
-        return self._threads.submit(self._run, chunk)
+        return self.call(run_chunk, chunk)
+
+    def call(self, function: Callable[..., T], *arguments: Any) -> "Future[T]":
+        """Have a function carried out in a worker, which imports it by its name."""
+        return self._threads.submit(self._run, function, arguments)
 
     def __enter__(self) -> Self:
         return self
@@ -72,19 +79,19 @@ class Processes:
             worker.kill()
         self._threads.shutdown(cancel_futures=True)
 
-    def _run(self, chunk: Chunk) -> Report:
+    def _run(self, function: Callable[..., T], arguments: tuple[Any, ...]) -> T:
         worker = self._take()
         try:
-            report = worker.run(chunk)
+            answer: T = worker.run(function, arguments)
         except BaseException:
             self._remove(worker)
             raise
-        if report.built >= BUILDS_PER_WORKER:
+        if isinstance(answer, Report) and answer.built >= BUILDS_PER_WORKER:
             self._remove(worker)
         else:
             with self._access:
                 self._idle.append(worker)
-        return report
+        return answer
 
     def _take(self) -> "_Worker":
         with self._access:
@@ -103,27 +110,34 @@ class Processes:
 
 
 class _Worker:
-    """A process that runs one chunk at a time."""
+    """A process that does one thing at a time.
+
+    Raises:
+        SweepStoppedError: the system lets no more processes start.
+    """
 
     def __init__(self) -> None:
         package = str(Path(drake_formation.__file__).parents[1])
         path = os.pathsep.join(filter(None, [package, os.environ.get("PYTHONPATH")]))
         # A process group of its own: Ctrl-C is for this process, which ends the workers in good order.
-        self._process = subprocess.Popen(
-            [sys.executable, "-P", "-m", "drake_formation.sweep.worker"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            env=os.environ | ONE_THREAD | {"PYTHONPATH": path},
-            process_group=0,
-        )
+        try:
+            self._process = subprocess.Popen(
+                [sys.executable, "-P", "-m", "drake_formation.sweep.worker"],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                env=os.environ | ONE_THREAD | {"PYTHONPATH": path},
+                process_group=0,
+            )
+        except OSError as error:
+            raise SweepStoppedError(f"a worker process cannot be started: {error.strerror}") from error
         self._ready = False
 
     @property
     def pid(self) -> int:
         return self._process.pid
 
-    def run(self, chunk: Chunk) -> Report:
-        """Have a chunk run.
+    def run(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
+        """Have a function carried out; gives what it gives and raises what it raises.
 
         Raises:
             WorkerDiedError: the process ended meanwhile.
@@ -134,7 +148,7 @@ class _Worker:
         try:
             if not self._ready:
                 self._ready = bool(pickle.load(self._process.stdout))
-            pickle.dump(chunk, self._process.stdin)
+            pickle.dump((function, arguments), self._process.stdin)
             self._process.stdin.flush()
             answer = pickle.load(self._process.stdout)
         except (EOFError, BrokenPipeError, pickle.UnpicklingError) as error:
@@ -145,8 +159,7 @@ class _Worker:
             raise WorkerDiedError(_cause(status)) from error
         if isinstance(answer, BaseException):
             raise answer
-        report: Report = answer
-        return report
+        return answer
 
     def kill(self) -> None:
         """End the process now; it has nothing to lose."""

@@ -1,7 +1,7 @@
 """Running a sweep: what is missing is run and kept, then all of it becomes one dataset."""
 
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,10 +10,10 @@ import numpy as np
 import xarray as xr
 
 from drake_formation.simulation.engines import ENGINES
-from drake_formation.sweep.dataset import write_dataset, write_failures
+from drake_formation.sweep.dataset import FAILURES, write_dataset, write_failures
 from drake_formation.sweep.definition import Sweep
 from drake_formation.sweep.drive import drive
-from drake_formation.sweep.errors import SweepError
+from drake_formation.sweep.errors import SweepError, SweepStoppedError
 from drake_formation.sweep.executors import Executor, choose
 from drake_formation.sweep.load import load_sweep
 from drake_formation.sweep.store import Store
@@ -58,7 +58,9 @@ def run_sweep(
     """Run a sweep, or what is missing of it.
 
     Every finished run is on disk, in ``runs.sqlite``, before it counts: a sweep that was interrupted, even killed,
-    goes on where it was when it is called again. Results depend neither on the executor nor on its workers.
+    goes on where it was when it is called again. Results depend neither on the executor nor on its workers. Runs made
+    by other software, be it other code of this package in the same version, are never mixed: a folder that holds such
+    runs is refused, and a worker that has other code too.
 
     Args:
         sweep: a sweep, or what :func:`load_sweep` takes.
@@ -78,7 +80,7 @@ def run_sweep(
     Raises:
         ScenarioError: the sweep is wrong.
         SweepError: it cannot be begun so, or there.
-        SweepStoppedError: it cannot go on; what was finished is kept.
+        SweepStoppedError: it cannot go on, or what it made cannot be written; what was finished is kept.
     """
     if not isinstance(sweep, Sweep):
         sweep = load_sweep(sweep)
@@ -110,11 +112,26 @@ def run_sweep(
             task = Task(sweep.base.data, engine, sweep.trajectories, versions())
             with workforce as workers_at_hand:
                 drive(sweep, task, missing, workers_at_hand, keep)
-        write_dataset(folder / DATASET, sweep, store, identity)
-        write_failures(folder, sweep, store)
+        with _explained(folder / DATASET):
+            write_dataset(folder / DATASET, sweep, store, identity)
+        with _explained(folder / FAILURES):
+            write_failures(folder, sweep, store)
         dataset = xr.open_dataset(folder / DATASET, engine="netcdf4")
         if figures:
             from drake_formation.viz.sweep_figures import write_sweep_figures
 
-            write_sweep_figures(dataset, folder / FIGURES)
+            with _explained(folder / FIGURES):
+                write_sweep_figures(dataset, folder / FIGURES)
     return dataset
+
+
+@contextmanager
+def _explained(path: Path) -> Iterator[None]:
+    """What the system, or a library of files, says against a file that is made of the runs."""
+    try:
+        yield
+    except SweepError:
+        raise
+    except (OSError, RuntimeError) as error:
+        reason = (isinstance(error, OSError) and error.strerror) or str(error)
+        raise SweepStoppedError(f"{path}: cannot be written: {reason}") from error

@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from drake_formation.metrics import measure
 from drake_formation.parameters import structure
-from drake_formation.scenario import Scenario, resolve
+from drake_formation.scenario import Scenario, ScenarioError, resolve
 from drake_formation.simulation import PreparedRun
+from drake_formation.sweep.limits import series_faults
 from drake_formation.sweep.sampling import sample
 from drake_formation.sweep.schema import Trajectories
 
@@ -40,8 +41,10 @@ class Runner:
 
         Raises:
             SimulationError: the run diverged or the integrator gave up.
-            ScenarioError, LoweringError: the engine cannot run this scenario.
+            ScenarioError, LoweringError: the engine cannot run this scenario, or its time series are too long.
         """
+        if faults := list(series_faults(self._trajectories, scenario, points=1)):
+            raise ScenarioError(faults)
         series = self._ready(scenario).run_known(scenario)
         values = {
             name: np.array(np.nan if value is None else value, dtype=float)

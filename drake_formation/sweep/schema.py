@@ -11,8 +11,10 @@ from pydantic import Discriminator, Field, Tag
 from drake_formation.config.values import Positive, Section
 from drake_formation.simulation.result import VARIABLES, VECTOR
 
-Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$")]
-FieldPath = Annotated[str, Field(pattern=r"^[^.]+(\.[^.]+)*$")]
+Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$", max_length=100)]
+"""A name that is also one in NetCDF."""
+
+FieldPath = Annotated[str, Field(pattern=r"^[^.]+(\.[^.]+)*$", max_length=200)]
 """Dotted path of a scenario's field, such as ``springs.stiffness`` or ``robots.mass.0``."""
 
 Interval = Annotated[tuple[float, float], Field(strict=False)]

@@ -16,12 +16,16 @@ from drake_formation.lowering.errors import LoweringError
 from drake_formation.scenario import ScenarioError
 from drake_formation.scenario.source import Document
 from drake_formation.simulation import SimulationError
+from drake_formation.sources import source_hash
 from drake_formation.sweep.definition import point_scenario
 from drake_formation.sweep.errors import SweepError
 from drake_formation.sweep.runner import Runner
 from drake_formation.sweep.schema import Trajectories
 
 Array = NDArray[np.float64]
+
+CODE = "drake-formation-code"
+"""Name under which the hash of this package's sources stands among the versions."""
 
 
 @dataclass(frozen=True)
@@ -88,9 +92,9 @@ class Report:
 
 @functools.cache
 def versions() -> dict[str, str]:
-    """Versions of all software whose numbers end up in a result."""
+    """Versions of all software whose numbers end up in a result; of this package, which may be worked on, the code."""
     packages = ("drake-formation", "drake", "numpy", "scipy", "numba")
-    return {"python": python_version()} | {name: version(name) for name in packages}
+    return {"python": python_version(), CODE: source_hash()[:16]} | {name: version(name) for name in packages}
 
 
 def run_chunk(chunk: Chunk) -> Report:
@@ -124,6 +128,7 @@ def _run(runner: Runner, base: Document, index: int, overrides: dict[str, Any]) 
     try:
         return Outcome(index, None, runner.measure(point_scenario(base, overrides)))
     except (ScenarioError, SimulationError, LoweringError) as error:
-        return Outcome(index, str(error))
+        reason = str(error)
     except (Exception, SystemExit) as error:  # whatever it is, it is this run's, and the sweep goes on
-        return Outcome(index, f"{type(error).__name__}: {error}")
+        reason = f"{type(error).__name__}: {error}"
+    return Outcome(index, reason.replace("\0", "").encode(errors="backslashreplace").decode())

@@ -1,10 +1,14 @@
 """The store runs each scenario once and finds it again."""
 
+import os
+
 import pytest
 import xarray as xr
 
 from drake_formation import load_scenario, simulate, with_overrides
 from drake_formation.paper.store import Store
+from drake_formation.sweep import Processes, SweepStoppedError
+from drake_formation.sweep.work import CODE, versions
 
 SHORT = load_scenario("line", overrides={"aggregation.duration": 1.0, "transport.duration": 2.0})
 OTHER = with_overrides(SHORT, {"springs.stiffness": 2.0})
@@ -49,3 +53,59 @@ def test_more_runs_than_the_workers_may_make_are_made_all_the_same(store, monkey
     store.run(runs, lambda: calls.append(1))
     assert len(calls) == 5
     assert not store.missing(runs)
+
+
+def test_other_code_makes_the_runs_anew_beside_the_earlier_ones(store, monkeypatch):
+    store[SHORT]
+    before = store.path(SHORT)
+    monkeypatch.setattr("drake_formation.paper.store.versions", lambda: versions() | {CODE: "other"})
+    assert store.path(SHORT) != before
+    assert store.missing([SHORT]) == [SHORT]
+    assert before.exists()
+
+
+@pytest.mark.parametrize(
+    "damage", [lambda whole: b"", lambda whole: whole[: len(whole) // 2], lambda whole: b"no" * 999]
+)
+def test_a_damaged_result_is_made_anew(store, damage):
+    wanted = store[SHORT]
+    path = store.path(SHORT)
+    path.write_bytes(damage(path.read_bytes()))
+    xr.testing.assert_identical(store[SHORT], wanted)
+    xr.testing.assert_identical(xr.load_dataset(path), wanted)
+
+
+DIVERGING = with_overrides(
+    SHORT,
+    {
+        "consensus.delta": 1e6,
+        "simulator.use_error_control": False,
+        "simulator.max_step_size": 0.5,
+        "transport.duration": 60.0,
+    },
+)
+
+
+def test_a_run_that_fails_in_a_worker_stops_the_study_in_words(store):
+    with pytest.raises(SweepStoppedError, match="the run stopped at t = "):
+        store.run([DIVERGING], lambda: None)
+    assert not list(store.path(SHORT).parent.iterdir())
+
+
+@pytest.mark.parametrize(("deaths", "kept"), [(1, True), (2, False)])
+def test_a_run_whose_worker_is_killed_is_made_once_more(store, monkeypatch, deaths, kept):
+    call, calls = Processes.call, []
+
+    def deadly(pool, function, *arguments):
+        calls.append(arguments)
+        if len(calls) <= deaths:
+            return call(pool, os._exit, 7)
+        return call(pool, function, *arguments)
+
+    monkeypatch.setattr(Processes, "call", deadly)
+    if kept:
+        store.run([SHORT], lambda: None)
+        assert not store.missing([SHORT])
+    else:
+        with pytest.raises(SweepStoppedError, match="the worker process ended with exit status 7"):
+            store.run([SHORT], lambda: None)

@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -34,10 +35,27 @@ def patience(monkeypatch):
     monkeypatch.setattr(module, "PATIENCE", 1.0)
 
 
-@pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense://x"])
-def test_no_scheduler_is_said_so(tmp_path, patience, address):
-    with pytest.raises(SweepError, match=f"no Dask scheduler at {address}"):
+def test_no_scheduler_is_said_so(tmp_path, patience):
+    with pytest.raises(SweepError, match=r"no Dask scheduler at tcp://127\.0\.0\.1:1: .* after 1 s"):
+        run_sweep(SWEEP, tmp_path, scheduler="tcp://127.0.0.1:1")
+
+
+def test_something_else_that_listens_there_is_no_scheduler(tmp_path, patience):
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
+        with pytest.raises(SweepError, match=f"no Dask scheduler at {address} answered within 1 s"):
+            run_sweep(SWEEP, tmp_path, scheduler=address)
+
+
+@pytest.mark.parametrize(
+    "address", ["foo://;x", "", "tcp://", "tcp://host", "tcp://host:x", "tcp://host:99999", "tcp://[", "inproc://a:1"]
+)
+def test_what_is_no_address_is_refused_at_once(tmp_path, address):
+    pytest.importorskip("distributed")
+    with pytest.raises(SweepError, match="give an address such as tcp://") as refused:
         run_sweep(SWEEP, tmp_path, scheduler=address)
+    assert repr(address) in str(refused.value)
+    assert not list(tmp_path.iterdir())
 
 
 def dask(part, file, *options):

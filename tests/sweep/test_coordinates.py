@@ -1,6 +1,8 @@
 import numpy as np
+import pytest
 from sweep.quick import quick_sweep
 
+from drake_formation.scenario import ScenarioError
 from drake_formation.sweep import load_sweep
 from drake_formation.sweep.coordinates import coordinates, dimensions
 
@@ -84,3 +86,19 @@ def test_a_list_has_its_labels_and_the_fields_that_all_its_points_set():
     assert list(found["point"].values) == ["a", "b"]
     assert list(found["stiffness"].values) == [1.0, 2.0]
     assert "mass" not in found
+
+
+def test_a_name_that_a_fields_coordinate_has_is_refused():
+    # The zip's name makes its field go by its path, which is the list's name.
+    axes = [
+        {"kind": "zip", "name": "delta", "values": {"consensus.delta": [0.0, 1.0]}},
+        {"kind": "list", "name": "consensus.delta", "points": [{"label": "a", "set": {"robots.mass": 30.0}}]},
+    ]
+    with pytest.raises(ScenarioError, match=r"axes\.1\.name: taken by another part of the dataset"):
+        labelled(*axes)
+
+
+def test_whole_numbers_beyond_64_bits_are_told_apart_as_text():
+    seeds = {"path": "robots.start.random.seed", "values": [2**70, 2**70 + 1]}
+    _, found = labelled(seeds, set={"robots.start": {"random": {"about": [0.0, 0.0], "spread": 2.0}}})
+    assert list(found["seed"].values) == [str(2**70), str(2**70 + 1)]

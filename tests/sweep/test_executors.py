@@ -15,7 +15,12 @@ def test_executors_by_name():
 
 
 @pytest.mark.parametrize(
-    ("name", "workers", "message"), [("threads", None, "there are serial, processes"), ("processes", 0, "at least one")]
+    ("name", "workers", "message"),
+    [
+        ("threads", None, "there are serial, processes"),
+        ("processes", 0, "at least one"),
+        ("processes", 10**6, "at most 1024"),
+    ],
 )
 def test_what_there_is_not_is_refused(name, workers, message):
     with pytest.raises(SweepError, match=message):

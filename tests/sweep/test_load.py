@@ -10,7 +10,7 @@ from sweep.quick import QUICK, quick_sweep
 from drake_formation import load_scenario
 from drake_formation.scenario import ScenarioError
 from drake_formation.sweep import load_sweep, shipped_sweeps
-from drake_formation.sweep.load import MOST_POINTS
+from drake_formation.sweep.limits import MOST_POINTS
 
 SOUND = """\
 name: mine
@@ -90,6 +90,15 @@ def test_the_base_may_be_a_scenario_from_python():
         ("name: mine", "name: mine\nexecutor: dask", "mine.yaml:2: executor: unknown key"),
         ("name: mine", "name: [1]", "mine.yaml:1: name: not allowed (got [1])"),
         ("name: mine\n", "", "name: missing"),
+        ("scenario: line", f"scenario: {'x' * 300}", "mine.yaml:2: scenario: not a usable path: File name too long"),
+        ("name: mine", f"name: {'x' * 300}", "mine.yaml:1: name: not allowed"),
+        ("kind: list", f"kind: list\n    name: {'x' * 300}", "axes.2.name: not allowed"),
+        ("uniform: [1.0, 2.0]", "uniform: [-1e308, 1e308]", "axes.3.draw.avoidance.gain.uniform: out of range"),
+        ("values: [1.0, 2.0]", "linspace: [-1e308, 1e308, 3]", "mine.yaml:7: axes.0.linspace: out of range"),
+        ("label: a", r'label: "a\0"', "mine.yaml:14: axes.2.points.0.label: not text"),
+        ("label: a", r'label: "\ud83d"', "mine.yaml:14: axes.2.points.0.label: not text"),
+        ("robots.mass: 30.0", f"robots.start.random.seed: 0x{'f' * 9000}", "mine.yaml:15"),
+        ("aggregation.duration: 0.5", f"{'a.' * 200}a: 0.5", "mine.yaml:4"),
         ("scenario: line", "scenario: lime", "mine.yaml:2: scenario: no such file or shipped scenario (got lime)"),
         ("scenario: line", "scenario: lime", "did you mean 'line'?"),
         ("aggregation.duration: 0.5", "aggregation.durration: 0.5", "mine.yaml:4: aggregation.durration: unknown key"),
@@ -150,6 +159,26 @@ def test_a_grid_of_billions_is_refused():
     axes = [{"path": path, "linspace": [0.0, 1.0, 10_000]} for path in ("consensus.delta", "consensus.delta_v")]
     with pytest.raises(ScenarioError, match=f"at most {MOST_POINTS}"):
         load_sweep(quick_sweep(*axes))
+
+
+def contains_itself():
+    data = quick_sweep()
+    data["set"] = data
+    return data
+
+
+@pytest.mark.parametrize(
+    "data", [contains_itself(), quick_sweep() | {"set": {(1, 2): 3}}, quick_sweep() | {"scenario": {"a": {(1,): 2}}}]
+)
+def test_what_is_no_plain_data_is_refused(data):
+    with pytest.raises(ScenarioError, match="not plain data"):
+        load_sweep(data)
+
+
+def test_many_paths_are_compared_in_no_time():
+    points = [{"label": str(k), "set": {f"robots.mass.{k}": 1.0}} for k in range(2000)]
+    with pytest.raises(ScenarioError, match=r"robots\.mass and robots\.mass\.1999 both set the same field"):
+        load_sweep(quick_sweep({"kind": "list", "points": points}, {"path": "robots.mass", "values": [1.0]}))
 
 
 @pytest.mark.parametrize(("source", "message"), [("ganis", "did you mean 'gains'"), ("/", "a folder")])

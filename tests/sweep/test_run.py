@@ -15,10 +15,11 @@ import xarray as xr
 from sweep.quick import FAILING, QUICK, quick_sweep
 
 from drake_formation import metrics, simulate
-from drake_formation.sweep import SweepError, load_sweep, run_sweep
+from drake_formation.sweep import SweepError, SweepStoppedError, load_sweep, run_sweep
 from drake_formation.sweep import run as module
 from drake_formation.sweep.processes import Processes
 from drake_formation.sweep.store import DATABASE
+from drake_formation.sweep.work import CODE, versions
 
 SERIES = {"variables": ["position", "control_force"], "every": 0.25}
 LARGER = quick_sweep(
@@ -224,3 +225,27 @@ def test_open_workers_serve_several_sweeps(tmp_path, sweep):
         pids = workers.pids
         xr.testing.assert_identical(run(sweep, tmp_path / "c", executor=workers), first)
         assert workers.pids == pids
+
+
+def test_runs_of_other_code_are_never_mixed(tmp_path, sweep, monkeypatch):
+    first = run(sweep, tmp_path)
+    assert first.attrs["drake_formation_code"] == versions()[CODE]
+    changed = versions() | {CODE: "0123456789abcdef"}
+    with monkeypatch.context() as patch:
+        patch.setattr(module, "versions", lambda: changed)
+        with pytest.raises(SweepError, match=f"{CODE} {versions()[CODE]}, now 0123456789abcdef.*give another folder"):
+            run(sweep, tmp_path)
+    xr.testing.assert_identical(run(sweep, tmp_path), first)
+
+
+def test_a_dataset_that_cannot_be_written_loses_no_run(tmp_path, sweep, monkeypatch):
+    (tmp_path / "o" / "sweep.nc").mkdir(parents=True)
+    (tmp_path / "o" / "runs.lock").touch()
+    with pytest.raises(SweepStoppedError, match=r"sweep\.nc: cannot be written: Is a directory"):
+        run(sweep, tmp_path / "o")
+    assert not list((tmp_path / "o").glob(".*partial"))
+    (tmp_path / "o" / "sweep.nc").rmdir()
+    tallies = []
+    found = run(sweep, tmp_path / "o", progress=tallies.append)
+    assert tallies[0].resumed == len(sweep)
+    xr.testing.assert_identical(found, run(sweep, tmp_path / "fresh"))

@@ -12,7 +12,7 @@ from hypothesis.extra import numpy as arrays
 
 from drake_formation.sweep.errors import SweepError, SweepStoppedError
 from drake_formation.sweep.store import DATABASE, LOCK, Store
-from drake_formation.sweep.work import Outcome
+from drake_formation.sweep.work import CODE, Outcome
 
 IDENTITY = {"sweep": "abc", "engine": "compiled", "drake": "1.51.1"}
 
@@ -113,10 +113,10 @@ from drake_formation.sweep.store import Store
 from drake_formation.sweep.work import Outcome
 
 class Deadly(Store):
-    def _packed(self, outcome):
+    def _row(self, outcome):
         if outcome.index == 13 and {moment!r} == "within":
             os.kill(os.getpid(), signal.SIGKILL)
-        return super()._packed(outcome)
+        return super()._row(outcome)
 
 with Deadly(Path({str(tmp_path)!r}), {IDENTITY!r}) as store:
     store.add([Outcome(k, None, {{"x": np.arange(300.0) + k}}) for k in range(10)])
@@ -151,9 +151,84 @@ def test_a_file_is_no_folder(tmp_path):
 def test_a_damaged_database_is_refused_and_left_alone(tmp_path):
     (tmp_path / LOCK).write_text("")
     (tmp_path / DATABASE).write_bytes(b"no database at all" * 100)
-    with pytest.raises(SweepError, match="cannot be used"), Store(tmp_path, IDENTITY):
+    with pytest.raises(SweepError, match="is damaged"), Store(tmp_path, IDENTITY):
         pass
     assert (tmp_path / DATABASE).read_bytes().startswith(b"no database")
+
+
+def filled(folder):
+    """A store of some hundred pages."""
+    with Store(folder, IDENTITY) as store:
+        store.add([Outcome(k, None, {"x": np.random.default_rng(k).random(1000)}) for k in range(60)])
+    return folder / DATABASE
+
+
+def test_a_database_that_was_cut_is_refused_and_left_alone(tmp_path):
+    database = filled(tmp_path)
+    whole = database.read_bytes()
+    for share in (0.9, 0.5, 0.1):
+        database.write_bytes(whole[: int(share * len(whole))])
+        with (
+            pytest.raises(SweepError, match=r"is damaged .*move it away to run the sweep anew"),
+            Store(tmp_path, IDENTITY),
+        ):
+            pass
+        assert database.stat().st_size == int(share * len(whole))
+
+
+def test_a_byte_that_changed_never_becomes_another_number(tmp_path):
+    database = filled(tmp_path)
+    whole = database.read_bytes()
+    wanted = [np.random.default_rng(k).random(1000) for k in range(60)]
+    noticed = 0
+    for place in np.random.default_rng(1).integers(100, len(whole), 60):
+        database.write_bytes(whole[:place] + bytes([whole[place] ^ 0x10]) + whole[place + 1 :])
+        try:
+            with Store(tmp_path, IDENTITY) as store:
+                found = list(store.outcomes(0, 60))
+        except SweepError:
+            noticed += 1
+        else:
+            for outcome in found:
+                np.testing.assert_array_equal(outcome.values["x"], wanted[outcome.index])
+    assert noticed > 40
+
+
+def test_a_database_that_someone_holds_is_said_so(tmp_path, monkeypatch):
+    database = filled(tmp_path)
+    connect = sqlite3.connect
+    monkeypatch.setattr(sqlite3, "connect", lambda *places, **settings: connect(*places, **settings, timeout=0.1))
+    with connect(database) as other:
+        other.execute("BEGIN EXCLUSIVE")
+        with pytest.raises(SweepError, match="cannot be used: database is locked"), Store(tmp_path, IDENTITY):
+            pass
+    with Store(tmp_path, IDENTITY) as store:
+        assert store.kept(60)[0].all()
+
+
+def test_runs_of_other_code_are_refused_with_what_to_do(tmp_path):
+    with Store(tmp_path, IDENTITY | {CODE: "abc"}) as store:
+        store.add([Outcome(0, None, {"x": np.array(1.0)})])
+    message = f"{CODE} abc, now xyz.*give another folder, or go back to the code that made them"
+    with pytest.raises(SweepError, match=message), Store(tmp_path, IDENTITY | {CODE: "xyz"}):
+        pass
+
+
+def test_runs_of_a_version_that_noted_no_code_are_refused_in_words(tmp_path):
+    with Store(tmp_path, IDENTITY) as store:
+        store.add([Outcome(0, None, {"x": np.array(1.0)})])
+    message = "did not note by which code"
+    with pytest.raises(SweepError, match=message), Store(tmp_path, IDENTITY | {CODE: "xyz"}):
+        pass
+
+
+def test_a_folder_without_runs_is_anybodys(tmp_path):
+    with Store(tmp_path, IDENTITY):
+        pass
+    with Store(tmp_path, IDENTITY | {"engine": "blocks"}) as store:
+        store.add([Outcome(0, None, {"x": np.array(1.0)})])
+    with pytest.raises(SweepError, match="engine blocks, now compiled"), Store(tmp_path, IDENTITY):
+        pass
 
 
 def test_what_cannot_be_written_stops_the_sweep_and_keeps_what_was(tmp_path):

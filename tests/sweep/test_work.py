@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from sweep.quick import FAILING, quick_sweep
 
+from drake_formation.sources import source_hash
 from drake_formation.sweep import SweepError, load_sweep
-from drake_formation.sweep.work import Chunk, Task, run_chunk, versions
+from drake_formation.sweep.work import CODE, Chunk, Task, run_chunk, versions
 
 
 def chunk(sweep, *indices, **changes):
@@ -39,6 +40,21 @@ def test_what_no_one_thought_of_is_the_runs_own_failure(sweep, monkeypatch):
     monkeypatch.setattr("drake_formation.sweep.runner.Runner.measure", broken)
     (outcome,) = run_chunk(chunk(sweep, 0)).outcomes
     assert outcome.error == "SystemExit: Drake demands"
+
+
+def test_an_error_is_text_that_any_file_can_hold(sweep, monkeypatch):
+    def broken(*_):
+        raise ValueError("a\0b \ud83d δ")
+
+    monkeypatch.setattr("drake_formation.sweep.runner.Runner.measure", broken)
+    (outcome,) = run_chunk(chunk(sweep, 0)).outcomes
+    assert outcome.error == r"ValueError: ab \ud83d δ"
+
+
+def test_other_code_in_the_same_version_is_other_software(sweep, monkeypatch):
+    assert versions()[CODE] == source_hash()[:16]
+    with pytest.raises(SweepError, match=f"a worker has {CODE} {versions()[CODE]} where this process has {CODE} other"):
+        run_chunk(chunk(sweep, 0, versions=versions() | {CODE: "other"}))
 
 
 def test_a_worker_with_other_software_refuses(sweep):

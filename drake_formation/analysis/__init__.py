@@ -21,7 +21,7 @@ from drake_formation.analysis.edge_weights import AveragingWeights, FastestWeigh
 from drake_formation.analysis.errors import IllPosedError
 from drake_formation.analysis.force_limit import ForceLimited, largest_gain
 from drake_formation.analysis.graph_results import CheapestGraph, ParetoFront
-from drake_formation.analysis.linearization import NOT_COVERED, LinearFormation, linearize
+from drake_formation.analysis.linearization import NOT_COVERED, LinearFormation, at_rest, linearize
 from drake_formation.analysis.local import LocalLoop, Margins, local_loops
 from drake_formation.analysis.loss import LossMargin, loss_margin
 from drake_formation.analysis.measures import ForceNoise, HandOff, Pulse, Vibration
@@ -68,6 +68,7 @@ __all__ = [
     "Tuned",
     "VelocityGain",
     "Vibration",
+    "at_rest",
     "certify",
     "cheapest_graph",
     "delay_margin",

@@ -35,7 +35,9 @@ PORT_ORDER = ("phase", "reference", "spring", "channel", "sensed")
 def build_diagram(scenario: Scenario) -> Diagram:
     """Build the block diagram of a scenario.
 
-    Its default Context is the scenario's initial state, at rest. The hand-off is an event of the diagram. Output
+    Its default Context is the scenario's initial state, at rest. The hand-off is an event of the diagram that changes
+    discrete state, which Drake's ``Linearize`` does not take: at ``aggregation.duration`` 0 there is none, and
+    :func:`drake_formation.analysis.at_rest` gives a scenario that starts where its diagram can be linearized. Output
     ports, for every robot i from 1: ``robot_i_state`` (m, m/s), ``robot_i_tracking_error`` x − x_r (m, m/s),
     ``robot_i_consensus_error`` (m), and in newtons ``robot_i_tracking_force`` u_l, ``robot_i_consensus_force`` u_g,
     ``robot_i_avoidance_force``, ``robot_i_control_force`` (the sum of the three) and ``robot_i_spring_force``; and

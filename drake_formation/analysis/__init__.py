@@ -22,7 +22,7 @@ from drake_formation.analysis.gains.start_limited_gain import OwnForce, own_forc
 from drake_formation.analysis.gains.tuning import Tuned, tune
 from drake_formation.analysis.gains.velocity_gain import VelocityGain, velocity_gain
 from drake_formation.analysis.linear.errors import IllPosedError
-from drake_formation.analysis.linear.linearization import NOT_COVERED, LinearFormation, linearize
+from drake_formation.analysis.linear.linearization import NOT_COVERED, LinearFormation, at_rest, linearize
 from drake_formation.analysis.network.delay_margin import DelayMargin, delay_margin
 from drake_formation.analysis.network.loss_margin import LossMargin, loss_margin
 from drake_formation.analysis.network.sampled_data import longest_period
@@ -75,6 +75,7 @@ __all__ = [
     "Tuned",
     "VelocityGain",
     "Vibration",
+    "at_rest",
     "certify",
     "cheapest_graph",
     "delay_margin",

@@ -188,14 +188,24 @@ class Transport(Section):
 class Simulation(Section):
     """Drake's ``SimulatorConfig``: the fields that every supported version of Drake has."""
 
-    integration_scheme: str = Field(default="runge_kutta5", description="one of Drake's integration schemes")
-    max_step_size: Positive = Field(default=0.1, description="largest step (s)")
+    integration_scheme: str = Field(
+        default="runge_kutta5",
+        description="one of Drake's integration schemes; velocity_implicit_euler for one robot alone",
+    )
+    max_step_size: Positive = Field(
+        default=0.1,
+        description="largest step (s), or every step without error control; where obstacles are so small that such a "
+        "step could leap over them, a run with error control is repeated with shorter ones",
+    )
     accuracy: Positive = Field(
-        default=1e-6, description="target accuracy of an error-controlled step; chosen: positions within 1e-4 m"
+        default=1e-6,
+        description="largest error of any position (m) or velocity (m/s) in one step, not of the whole run; 1e-14 to "
+        "what the scheme knows as its loosest, 1e-3 for runge_kutta5; has no effect without error control",
     )
     use_error_control: bool = Field(
         default=True,
-        description="adapt the step to the accuracy; as in Drake, a scheme without error estimate takes fixed steps",
+        description="adapt the step to the accuracy; as in Drake, a scheme without error estimate (explicit_euler, "
+        "runge_kutta2, semi_explicit_euler) takes fixed steps",
     )
     start_time: NonNegative = Field(default=0.0, description="time at which the scenario begins (s)")
     target_realtime_rate: NonNegative = Field(

@@ -1,7 +1,8 @@
 """Scenario files as plain data that remembers its lines.
 
 The parser knows YAML 1.2 only, whatever a file declares: ``yes`` is text and ``1e4`` a number. It builds
-mappings, lists, numbers, booleans, text and null; no other object can come out of a file.
+mappings, lists, numbers, booleans, text and null; no other object can come out of a file. The one thing it takes from
+YAML 1.1 is the merge key: ``<<: *base`` stands for the entries of ``base`` that the mapping does not give itself.
 """
 
 import os
@@ -13,7 +14,7 @@ from typing import Any
 
 from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
-from ruamel.yaml.nodes import MappingNode, Node, ScalarNode
+from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 from ruamel.yaml.resolver import VersionedResolver
 
 from drake_formation.config.errors import Fault, Path, ScenarioError, shown
@@ -27,6 +28,7 @@ MOST_BYTES = 2_000_000
 _ALLOWED = f"a regular file of UTF-8 text, at most {MOST_BYTES // 10**6} MB"
 
 _TAG = "tag:yaml.org,2002:"
+_MERGE = _TAG + "merge"
 
 
 @dataclass(frozen=True)
@@ -165,6 +167,7 @@ class _Builder:
         self.faults: list[Fault] = []
         self._origin = origin
         self._open: set[int] = set()
+        self._merged = 0
 
     def build(self, node: Node, path: Path, line: int) -> Any:
         """Data of a node that stands at a path, on a line."""
@@ -188,7 +191,7 @@ class _Builder:
     def _mapping(self, node: MappingNode, path: Path) -> dict[str, Any]:
         data: dict[str, Any] = {}
         lines: dict[str, int] = {}
-        for key_node, value_node in node.value:
+        for key_node, value_node in self._entries(node, path):
             line = _line(key_node)
             key = self._scalar(key_node, path, line) if isinstance(key_node, ScalarNode) else []
             if isinstance(key, int) and not isinstance(key, bool):
@@ -202,6 +205,36 @@ class _Builder:
                 data[key] = self.build(value_node, (*path, key), line)
         return data
 
+    def _entries(self, node: MappingNode, path: Path) -> list[tuple[Node, Node]]:
+        """Keys and values of a mapping, then those that it merges in; of equal ones there, the first counts."""
+        entries = [(key, value) for key, value in node.value if key.tag != _MERGE]
+        given = {key.value for key, _ in entries if isinstance(key, ScalarNode)}
+        merges = [(_line(key), value) for key, value in node.value if key.tag == _MERGE]
+        for line, _ in merges[1:]:
+            self._fault((*path, "<<"), f"given twice, first on line {merges[0][0]}", line, allowed="a list of mappings")
+        for line, value in merges[:1]:
+            for base in value.value if isinstance(value, SequenceNode) else [value]:
+                for inherited, its_value in self._base_entries(base, path, line):
+                    if inherited.value not in given:
+                        entries.append((inherited, its_value))
+                        given.add(inherited.value)
+        return entries
+
+    def _base_entries(self, base: Node, path: Path, line: int) -> list[tuple[ScalarNode, Node]]:
+        if not isinstance(base, MappingNode):
+            self._fault((*path, "<<"), "merges what is not a mapping", line, allowed="a mapping, or a list of them")
+            return []
+        if id(base) in self._open:
+            self._fault((*path, "<<"), "an alias that contains itself", line)
+            return []
+        self._merged += 1
+        if self._merged > _MOST_VALUES:
+            raise YAMLError(f"more than {_MOST_VALUES} merges")
+        self._open.add(id(base))
+        entries = [(key, value) for key, value in self._entries(base, path) if isinstance(key, ScalarNode)]
+        self._open.remove(id(base))
+        return entries
+
     def _scalar(self, node: ScalarNode, path: Path, line: int) -> Any:
         kind = str(node.tag).removeprefix(_TAG)
         convert = _SCALARS.get(kind)
@@ -212,8 +245,8 @@ class _Builder:
         except (ValueError, KeyError):
             return self._fault(path, f"not a valid {kind}", line, shown(node.value))
 
-    def _fault(self, path: Path, message: str, line: int, value: str = "") -> None:
-        self.faults.append(Fault(path, message, value, origin=self._origin(line)))
+    def _fault(self, path: Path, message: str, line: int, value: str = "", allowed: str = "") -> None:
+        self.faults.append(Fault(path, message, value, allowed, origin=self._origin(line)))
 
 
 def _integer(text: str) -> int:
@@ -231,7 +264,7 @@ _SCALARS: dict[str, Callable[[str], Any]] = {
     "int": _integer,
     "float": _number,
     "str": str,
-    # Types beyond YAML 1.2's core: dates, merge keys and default values are text here.
+    # Types beyond YAML 1.2's core: dates, default values and << where no key stands are text here.
     "timestamp": str,
     "merge": str,
     "value": str,

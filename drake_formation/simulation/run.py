@@ -11,12 +11,16 @@ from drake_formation.formation.formation import Formation
 from drake_formation.parameters import block_parameters, structure, write_parameters, write_start
 from drake_formation.scenario import Scenario, resolve
 from drake_formation.simulation.engines import ENGINES, Engine
+from drake_formation.simulation.obstacles import Leap, first_hit, worst_leap
 from drake_formation.simulation.recorder import NonFiniteStateError, Recording
 from drake_formation.simulation.result import labelled_result
 from drake_formation.simulation.series import Series, time_series
 
 if TYPE_CHECKING:
     import xarray as xr
+
+MOST_STEPS = 200_000
+"""A run that would need more of them, as its obstacles are so small, is refused."""
 
 Progress = Callable[[float], None]
 """Called with how much simulated time is done, from 0 to :func:`simulated_duration` (s)."""
@@ -42,7 +46,8 @@ def simulate(scenario: Scenario, *, engine: str = "blocks", progress: Progress |
     """Run a scenario from its initial state to its end.
 
     Where there are obstacles, the transport is run once more from the hand-off without them: the deviation from that
-    response is the paper's tracking error.
+    response is the paper's tracking error. Where a robot crossed much of an obstacle's range in one step, the whole is
+    repeated with shorter steps.
 
     Args:
         scenario: what to run.
@@ -125,9 +130,16 @@ class PreparedRun:
             at_hand_off = run.context.Clone() if felt_obstacles(scenario) else None
             run.advance(end)
         except _FAILURES as failure:
+            if felt_obstacles(scenario) and len(run.recording.times):
+                _require_clear(scenario, run)
+                if leap := worst_leap(scenario, run.recording):
+                    return self.run_known(_with_shorter_steps(scenario, run, leap), progress=progress)
             raise _simulation_error(scenario, run, run.recording, None, failure) from failure
         if at_hand_off is None:
             return time_series(scenario, run.recording, run.recording)
+        _require_clear(scenario, run)
+        if leap := worst_leap(scenario, run.recording):
+            return self.run_known(_with_shorter_steps(scenario, run, leap), progress=progress)
 
         write_parameters(self.diagram, at_hand_off, block_parameters(resolve(without_obstacles(scenario))))
         nominal = self._start(
@@ -137,9 +149,7 @@ class PreparedRun:
             nominal.advance(end)
         except _FAILURES as failure:
             raise _simulation_error(scenario, nominal, run.recording, nominal.recording, failure) from failure
-        series = time_series(scenario, run.recording, nominal.recording)
-        _require_clear(scenario, series)
-        return series
+        return time_series(scenario, run.recording, nominal.recording)
 
     def _initial_context(self, formation: Formation) -> Context:
         context = self._context  # one for all runs, as making one takes as long as some runs
@@ -166,20 +176,41 @@ def without_obstacles(scenario: Scenario) -> Scenario:
     return scenario.model_copy(update={"avoidance": scenario.avoidance.model_copy(update={"gain": 0.0})})
 
 
-def _require_clear(scenario: Scenario, series: Series) -> None:
-    """A robot inside an obstacle feels no force there: say so instead of carrying on as if nothing were in its way."""
-    hit = (series["clearance"] <= 0) & (series["phase"] == 1)[:, None, None]
-    if not hit.any():
-        return
-    sample, robot, obstacle = (int(index[0]) for index in np.nonzero(hit))
-    time = float(series["time"][sample])
-    raise SimulationError(
-        f"robot {robot + 1} is inside obstacle {obstacle + 1} at t = {time:.6g} s. Try other starting positions, "
-        "another place for the obstacle, or a larger avoidance.gain.",
-        time,
-        robot + 1,
-        labelled_result(scenario, series),
-    )
+def _require_clear(scenario: Scenario, run: Engine) -> None:
+    """Refuse a run with a robot inside an obstacle, where the force is beyond all bounds."""
+    if hit := first_hit(scenario, run.recording):
+        raise _stopped(
+            scenario,
+            run,
+            hit.time,
+            hit.robot,
+            f"robot {hit.robot} is inside obstacle {hit.obstacle} at t = {hit.time:.6g} s. Try other starting "
+            "positions, another place for the obstacle, or a larger avoidance.gain.",
+        )
+
+
+def _with_shorter_steps(scenario: Scenario, run: Engine, leap: Leap) -> Scenario:
+    """The scenario with steps that overlook no obstacle.
+
+    Raises:
+        SimulationError: the user wants all steps to have one length, or there would be too many.
+    """
+    settings = scenario.simulator
+    if run.fixed_step or (resolve(scenario).end - settings.start_time) / leap.longest > MOST_STEPS:
+        raise _stopped(
+            scenario,
+            run,
+            leap.time,
+            leap.robot,
+            f"robot {leap.robot} passes obstacle {leap.obstacle} at t = {leap.time:.6g} s so fast that steps of "
+            f"{settings.max_step_size:g} s may overlook it. Try simulator.max_step_size={leap.longest:.2g}, or a "
+            "larger avoidance.range.",
+        )
+    return scenario.model_copy(update={"simulator": settings.model_copy(update={"max_step_size": leap.longest})})
+
+
+def _stopped(scenario: Scenario, run: Engine, time: float, robot: int, message: str) -> SimulationError:
+    return SimulationError(message, time, robot, labelled_result(scenario, time_series(scenario, run.recording, None)))
 
 
 # Drake's own complaints, and Python's from the laws: coincident robots divide by zero.
@@ -194,7 +225,7 @@ def _simulation_error(
     robot = _culprit(failed)
     reasons: dict[type[BaseException], str] = {
         NonFiniteStateError: "its state is no longer finite",
-        ZeroDivisionError: "it met another robot or the middle of an obstacle",
+        ZeroDivisionError: "it met another robot",
         OverflowError: "its forces grew beyond all bounds",
     }
     reason = reasons.get(type(failure), f"the integrator gave up ({failure})")

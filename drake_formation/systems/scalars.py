@@ -12,15 +12,20 @@ Scalar = Any
 """float, AutoDiffXd or Expression; the laws of the blocks accept arrays of floats too."""
 
 
+def at_least(x: Scalar, bound: float) -> Scalar:
+    """max(x, bound), of any scalar or an array of floats."""
+    if isinstance(x, float):
+        return x if x > bound else bound
+    if isinstance(x, Expression):
+        return symbolic.max(x, bound)
+    if isinstance(x, np.ndarray):
+        return np.maximum(x, bound)
+    return x if x > bound else 0.0 * x + bound
+
+
 def positive_part(x: Scalar) -> Scalar:
     """max(0, x), of any scalar or an array of floats."""
-    if isinstance(x, float):
-        return x if x > 0.0 else 0.0
-    if isinstance(x, Expression):
-        return symbolic.max(x, 0.0)
-    if isinstance(x, np.ndarray):
-        return np.maximum(x, 0.0)
-    return x if x > 0.0 else 0.0 * x
+    return at_least(x, 0.0)
 
 
 def at_most(x: Scalar, bound: Scalar) -> Scalar:

@@ -231,6 +231,38 @@ def test_an_unknown_integrator_gets_the_nearest_name():
     assert fault.endswith("did you mean 'runge_kutta3'?")
 
 
+def test_a_scheme_that_drake_gets_wrong_for_several_robots_is_refused():
+    (fault,) = faults_of(simulator__integration_scheme="velocity_implicit_euler")
+    assert "several blocks" in fault
+    assert fault.endswith("runge_kutta5, semi_explicit_euler")
+    one = {"formation": {"shape": "line", "robots": 1, "side": 1.0}, "robots__start": [[0, 0]]}
+    assert faults_of(simulator__integration_scheme="velocity_implicit_euler", **one) == []
+
+
+@pytest.mark.parametrize(
+    ("scheme", "accuracy", "fault"),
+    [
+        ("runge_kutta5", 2e-3, "looser than runge_kutta5 goes (got 0.002); allowed: 1e-14 to 0.001"),
+        ("radau3", 0.02, "looser than radau3 goes (got 0.02); allowed: 1e-14 to 0.01"),
+        ("runge_kutta3", 1e-15, "tighter than double precision goes (got 1e-15); allowed: 1e-14 to 0.1"),
+    ],
+)
+def test_an_accuracy_that_the_scheme_would_not_keep_is_refused(scheme, accuracy, fault):
+    settings = {"simulator__integration_scheme": scheme, "simulator__accuracy": accuracy}
+    assert faults_of(**settings) == [f"simulator.accuracy: {fault}"]
+    assert faults_of(**settings, simulator__use_error_control=False) == []
+
+
+def test_an_accuracy_of_fixed_steps_is_no_matter():
+    assert faults_of(simulator__integration_scheme="explicit_euler", simulator__accuracy=10.0) == []
+
+
+def test_steps_without_number_are_refused():
+    assert faults_of(simulator__max_step_size=1e-9) == [
+        "simulator.max_step_size: 6e+10 steps and more are too many for 60 s (got 1e-09); allowed: at least 6e-07 s"
+    ]
+
+
 def test_integrators_for_multibody_plants_only_are_not_offered():
     (fault,) = faults_of(simulator__integration_scheme="cenic")
     assert "cenic" not in fault.split("allowed: ")[1]

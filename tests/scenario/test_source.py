@@ -112,3 +112,44 @@ def test_files_that_are_no_text(tmp_path):
         read(tmp_path / "missing.yaml")
     with pytest.raises(ScenarioError, match="cannot be read: Is a directory"):
         read(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("text", "data"),
+    [
+        ("a: &a {x: 1, y: {z: 2}}\nb:\n  x: 3\n  <<: *a", {"x": 3, "y": {"z": 2}}),
+        ("a: &a {x: 1}\nc: &c {x: 5, w: 2}\nb: {<<: [*a, *c], q: 1}", {"q": 1, "x": 1, "w": 2}),
+        ("a: &a {x: 1, v: 4}\nc: &c {<<: *a, y: 2}\nb: {<<: *c, x: 9}", {"x": 9, "y": 2, "v": 4}),
+        ('b: {"<<": 1}', {"<<": 1}),
+    ],
+)
+def test_a_merge_key_brings_what_a_mapping_does_not_give_itself(text, data):
+    assert parse(text, "f.yaml").data["b"] == data
+
+
+def test_a_merged_value_knows_the_line_of_its_base():
+    document = parse("a: &a\n  x: 1\n  y: 2\nb:\n  <<: *a\n  x: 3\n", "f.yaml")
+    assert document.origin(("b", "y")) == "f.yaml:3"
+    assert document.origin(("b", "x")) == "f.yaml:6"
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ("b:\n  <<: 3", "f.yaml:2: b.<<: merges what is not a mapping; allowed: a mapping, or a list of them"),
+        ("b:\n  <<: [{}, x]", "f.yaml:2: b.<<: merges what is not a mapping; allowed: a mapping, or a list of them"),
+        ("b: &b\n  c:\n    <<: *b", "f.yaml:3: b.c.<<: an alias that contains itself"),
+        (
+            "a: &a {}\nb:\n  <<: *a\n  <<: *a",
+            "f.yaml:4: b.<<: given twice, first on line 3; allowed: a list of mappings",
+        ),
+        ("a: &a {x: 1}\nb: {<<: *a, x: 2, x: 3}", "f.yaml:2: b.x: given twice, first on line 2"),
+    ],
+)
+def test_a_merge_key_that_cannot_be_is_refused(text, fault):
+    assert faults_of(text) == [fault]
+
+
+def test_merges_that_multiply_without_end_are_refused():
+    lines = ["a0: &a0 {x: 1}", *(f"a{k}: &a{k} {{<<: [*a{k - 1}, *a{k - 1}]}}" for k in range(1, 40))]
+    assert faults_of("\n".join(lines)) == ["f.yaml:1: not valid YAML: more than 300000 merges"]

@@ -211,12 +211,12 @@ def test_robots_that_meet_stop_the_run():
     assert "met another robot" in str(error)
 
 
-def test_a_robot_that_meets_the_middle_of_an_obstacle_stops_the_run():
+def test_a_robot_that_begins_in_the_middle_of_an_obstacle_stops_the_run():
     obstacle = {"obstacles": [{"position": [4095.5, 0.5]}]}
     start = {"start": [[4090.0, 0.0], [4094.5, 0.5]], "mass": 2.0}
     slots = {"shape": "slots", "slots": [[-6.0, 0.0], [0.5, 0.5]]}
     error = failure(meeting(avoidance=obstacle | {"range": 0.25}, robots=start, formation=slots))
-    assert "middle of an obstacle" in str(error)
+    assert "inside obstacle 1" in str(error)
 
 
 def test_a_robot_that_jumps_into_an_obstacle_stops_the_run():
@@ -230,7 +230,7 @@ def test_a_robot_that_jumps_into_an_obstacle_stops_the_run():
 
 def test_a_failure_of_the_obstacle_free_response_keeps_the_whole_run():
     """The obstacle pushes robot 2 aside; without it, it meets robot 1."""
-    obstacle = {"obstacles": [{"position": [4094.5, -0.5]}], "range": 1.0}
+    obstacle = {"obstacles": [{"position": [4094.5, -5.5], "radius": 5.0}], "range": 1.0, "gain": 0.1}
     error = failure(meeting(avoidance=obstacle))
     assert error.partial["time"].values[-1] == 60.0
     assert "met another robot" in str(error)

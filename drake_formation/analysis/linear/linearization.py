@@ -146,7 +146,20 @@ def linearize(scenario: Scenario) -> LinearFormation:
 
 
 def at_rest(scenario: Scenario) -> Scenario:
-    """The scenario as it is linearized: in formation at the goal from the start, in transport, without obstacles."""
+    """The scenario as it is linearized: in formation at the goal from the start, in transport, without obstacles.
+
+    Drake's ``Linearize(diagram, diagram.CreateDefaultContext())`` takes the diagram built from it. It does not take one
+    with a hand-off, whose phase is discrete state.
+
+    Args:
+        scenario: any sound scenario.
+
+    Returns:
+        A scenario whose start is an equilibrium.
+
+    Raises:
+        ScenarioError: the scenario is wrong.
+    """
     return with_overrides(
         scenario,
         {

@@ -12,8 +12,11 @@ from drake_formation.config.values import Length, NonNegative, Section
 from drake_formation.formation.formation import Formation
 from drake_formation.parts.part import Numbers, Part
 from drake_formation.parts.registry import part
-from drake_formation.systems.scalars import Scalar, positive_part
+from drake_formation.systems.scalars import Scalar, at_least, positive_part
 from drake_formation.systems.templates import block_template, in_double
+
+SURFACE = 1e-50
+"""The least clearance that counts (m), so small that the force there, some 1e150 N, outlasts every shorter step."""
 
 
 def avoidance_force(
@@ -21,20 +24,22 @@ def avoidance_force(
 ) -> tuple[Scalar, Scalar]:
     """Repulsive force of one obstacle (Khatib 1986; the paper names an artificial potential function only).
 
-    η (1/ρ − 1/ρ0)/ρ² along ∇ρ for a clearance ρ < ρ0, else zero.
+    η (1/ρ − 1/ρ0)/ρ² along ∇ρ for a clearance ρ < ρ0, else zero. It grows beyond all bounds towards the surface, so
+    that no motion reaches it, and inside it is as large as at the surface: whatever step would end there, or look
+    there on its way, step control takes a shorter one.
 
     Args:
         dx: position of the robot relative to the obstacle's centre (m), x component.
         dy: its y component (m).
         radius: radius of the obstacle (m); 0 is a point.
         sensing_range: ρ0 (m).
-        gain: η (N m²).
+        gain: η (N m²); at 0 there is no force anywhere, inside neither.
 
     Returns:
         Components of the force on the robot (N).
     """
-    distance = (dx * dx + dy * dy) ** 0.5
-    clearance = distance - radius
+    distance = (dx * dx + dy * dy + SURFACE * SURFACE) ** 0.5
+    clearance = at_least(distance - radius, SURFACE)
     push = gain * positive_part(1.0 / clearance - 1.0 / sensing_range) / (clearance * clearance * distance)
     return push * dx, push * dy
 
@@ -88,9 +93,10 @@ def ObstacleAvoidance_(T: Any) -> Any:  # noqa: N802 - Drake's name for a templa
             sensed = self._sensed.Eval(context).tolist() if self._sensed else self._everything
             fx = fy = self._zero
             for seen, (ox, oy, radius) in zip(sensed, obstacles, strict=True):
-                gx, gy = avoidance_force(x - ox, y - oy, radius, sensing_range, gain)
-                fx, fy = fx + seen * gx, fy + seen * gy  # += would change an Expression in place
-            output.SetFromVector(np.array([phase * fx, phase * fy]))
+                # What is not felt has no gain: inside an obstacle the force is too large to be multiplied away.
+                gx, gy = avoidance_force(x - ox, y - oy, radius, sensing_range, phase * seen * gain)
+                fx, fy = fx + gx, fy + gy  # += would change an Expression in place
+            output.SetFromVector(np.array([fx, fy]))
 
     return Impl
 

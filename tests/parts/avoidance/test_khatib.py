@@ -2,6 +2,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pydrake.autodiffutils import AutoDiffXd
+from pydrake.symbolic import Expression, Variable
 
 from drake_formation.parts.avoidance.khatib import ObstacleAvoidance, avoidance_force
 
@@ -62,6 +64,37 @@ def test_a_round_obstacle_is_felt_as_a_point_at_its_surface(angle, radius, sensi
     assert round_one == pytest.approx(point, rel=1e-6, abs=1e-9 * np.hypot(*point))
 
 
+INSIDE = [(0.0, 0.0, 0.0), (0.0, 0.0, 0.3), (0.1, -0.1, 0.3), (0.25, 0.0, 0.25), (1e-9, 0.0, 1.0)]
+
+
+@pytest.mark.parametrize(("dx", "dy", "radius"), INSIDE[2:])
+def test_inside_the_force_is_beyond_all_bounds_in_every_scalar(dx, dy, radius):
+    field = (radius, 1.3, 31.56)
+    x, y = Variable("x"), Variable("y")
+    symbolic = avoidance_force(Expression(x), Expression(y), *field)
+    differentiated = avoidance_force(AutoDiffXd(dx, [1.0, 0.0]), AutoDiffXd(dy, [0.0, 1.0]), *field)
+    in_arrays = avoidance_force(np.array([dx]), np.array([dy]), *field)
+    found = {
+        "double": np.hypot(*avoidance_force(dx, dy, *field)),
+        "array": np.hypot(*in_arrays)[0],
+        "AutoDiff": np.hypot(*(force.value() for force in differentiated)),
+        "Expression": np.hypot(*(force.Evaluate({x: dx, y: dy}) for force in symbolic)),
+    }
+    assert min(found.values()) > 1e140
+
+
+@pytest.mark.parametrize(("dx", "dy", "radius"), INSIDE[:2])
+def test_in_the_very_middle_the_force_has_no_direction(dx, dy, radius):
+    assert avoidance_force(dx, dy, radius, 1.3, 31.56) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize(("dx", "dy", "radius"), INSIDE)
+def test_without_a_gain_there_is_no_force_inside_either(dx, dy, radius):
+    assert avoidance_force(dx, dy, radius, 1.3, 0.0) == (0.0, 0.0)
+    moved = avoidance_force(AutoDiffXd(dx, [1.0]), AutoDiffXd(dy, [0.0]), radius, 1.3, 0.0)
+    assert [(force.value(), force.derivatives().tolist()) for force in moved] == [(0.0, [0.0])] * 2
+
+
 def test_the_law_takes_arrays():
     dx, dy = np.array([0.5, 2.0]), np.array([0.5, 2.0])
     fx, fy = avoidance_force(dx, dy, 0.0, 1.3, 31.56)
@@ -72,10 +105,10 @@ def test_the_law_takes_arrays():
 OBSTACLES = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.2]]
 
 
-def force(phase=1.0, sensed=None):
+def force(phase=1.0, sensed=None, at=(0.0, 0.1)):
     block = ObstacleAvoidance([1.3, 31.56], OBSTACLES, masked=sensed is not None)
     context = block.CreateDefaultContext()
-    block.GetInputPort("state").FixValue(context, [0.0, 0.1, 5.0, 5.0])
+    block.GetInputPort("state").FixValue(context, [*at, 5.0, 5.0])
     block.GetInputPort("phase").FixValue(context, [phase])
     if sensed is not None:
         block.GetInputPort("sensed").FixValue(context, sensed)
@@ -93,6 +126,13 @@ def test_the_forces_of_all_obstacles_add():
 
 def test_no_obstacle_is_felt_during_aggregation():
     assert force(phase=0.0) == [0, 0]
+
+
+@pytest.mark.parametrize("at", [(1.0, 0.0), (0.0, 1.0), (0.1, 0.9)])
+def test_inside_an_obstacle_that_is_not_felt_there_is_no_force(at):
+    assert force(phase=0.0, at=at) == [0, 0]
+    assert force(sensed=[0.0, 0.0], at=at) == [0, 0]
+    assert at in ((1.0, 0.0), (0.0, 1.0)) or np.hypot(*force(at=at)) > 1e140
 
 
 @pytest.mark.parametrize("sensed", [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]])

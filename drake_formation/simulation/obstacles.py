@@ -1,0 +1,97 @@
+"""Whether a run took its obstacles seriously: no robot begins inside one, and none leaps over what it should feel."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drake_formation.scenario import Scenario, resolve
+from drake_formation.simulation.recorder import Recording
+
+Array = NDArray[np.float64]
+
+SHARE = 0.25
+"""How far a robot may move in one step, as a share of the distance from which it feels an obstacle's centre."""
+
+
+@dataclass(frozen=True)
+class Leap:
+    """A step in which a robot passes so much of an obstacle's range that the integrator may overlook it.
+
+    Attributes:
+        time: when it begins (s).
+        robot: which robot, from 1.
+        obstacle: which obstacle, from 1.
+        longest: a step that would be short enough (s), at most half of this one.
+    """
+
+    time: float
+    robot: int
+    obstacle: int
+    longest: float
+
+
+@dataclass(frozen=True)
+class Hit:
+    """A robot inside an obstacle, or on its edge.
+
+    Attributes:
+        time: when first (s).
+        robot: which robot, from 1.
+        obstacle: which obstacle, from 1.
+    """
+
+    time: float
+    robot: int
+    obstacle: int
+
+
+def first_hit(scenario: Scenario, recording: Recording) -> Hit | None:
+    """The first sample of the transport in which a robot is inside an obstacle, or None."""
+    obstacles, position = resolve(scenario).obstacles, recording.series("state")[..., :2]
+    with np.errstate(over="ignore"):
+        clearance = np.linalg.norm(position[:, :, None] - obstacles[:, :2], axis=-1) - obstacles[:, 2]
+    hits = np.argwhere((clearance <= 0.0) & (recording.phases == 1)[:, None, None])
+    if not len(hits):
+        return None
+    sample, robot, obstacle = hits[0].tolist()
+    return Hit(float(recording.times[sample]), robot + 1, obstacle + 1)
+
+
+def worst_leap(scenario: Scenario, recording: Recording) -> Leap | None:
+    """The leap that asks for the shortest steps, or None where all steps near obstacles were short enough.
+
+    An integrator looks at the force a few times in a step. Where the whole range of an obstacle, or its solid inside,
+    lies between two looks, nothing tells it that there was something to feel.
+
+    Args:
+        scenario: what ran.
+        recording: every step of the run; where it ended early, the longest step is taken to have come next.
+    """
+    times, state = recording.times, recording.series("state")
+    steps = np.append(np.diff(times), scenario.simulator.max_step_size)
+    position = state[..., :2]
+    move = steps[:, None, None] * state[..., 2:]
+    with np.errstate(over="ignore"):
+        length, moved = np.linalg.norm(move, axis=-1), np.zeros(move.shape[:-1])
+        moved[:-1] = np.linalg.norm(np.diff(position, axis=0), axis=-1)  # more where the step went through an obstacle
+    transport = (recording.phases == 1)[:, None]
+    worst = None
+    for number, (x, y, radius) in enumerate(resolve(scenario).obstacles, start=1):
+        reach = radius + scenario.avoidance.range
+        near = _least_distance(position - [x, y], move) < reach
+        for sample, robot in np.argwhere(transport & near & (np.maximum(length, moved) > SHARE * reach)):
+            shorter = SHARE * reach / max(length[sample, robot], 2.0 * SHARE * reach)
+            longest = float(steps[sample] * shorter)
+            if worst is None or longest < worst.longest:
+                worst = Leap(float(times[sample]), int(robot) + 1, number, longest)
+    return worst
+
+
+def _least_distance(offset: Array, move: Array) -> Array:
+    """How near the way from an offset along a move comes to the origin (m), shape (..., N)."""
+    with np.errstate(over="ignore", invalid="ignore"):  # a run that diverged may end in numbers whose squares overflow
+        squared = np.maximum((move * move).sum(axis=-1), np.finfo(float).tiny)
+        share = np.clip(-(offset * move).sum(axis=-1) / squared, 0.0, 1.0)
+        result: Array = np.linalg.norm(offset + share[..., None] * move, axis=-1)
+    return result

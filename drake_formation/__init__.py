@@ -9,6 +9,7 @@ Load a scenario, build its diagram, simulate it::
     result = simulate(scenario)  # a labelled xarray Dataset
 """
 
+from drake_formation.check import Check, check
 from drake_formation.diagram import build_diagram
 from drake_formation.metrics import Metrics, metrics
 from drake_formation.parameters import set_parameters
@@ -16,11 +17,13 @@ from drake_formation.scenario import Scenario, ScenarioError, load_scenario, wit
 from drake_formation.simulation import SimulationError, simulate
 
 __all__ = [
+    "Check",
     "Metrics",
     "Scenario",
     "ScenarioError",
     "SimulationError",
     "build_diagram",
+    "check",
     "load_scenario",
     "metrics",
     "set_parameters",

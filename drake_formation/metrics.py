@@ -1,11 +1,21 @@
-"""The figures by which a run is judged, each over the transport phase."""
+"""The figures by which a run is judged, each over the transport phase, between its samples too."""
 
-from collections.abc import Mapping
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from drake_formation.formation import graphs
+from drake_formation.parameters import block_parameters
+from drake_formation.scenario import Scenario, derive
+from drake_formation.simulation.extremes import Vectors, last_beyond, longest, shortest
+from drake_formation.simulation.laws import ControlLaw
+from drake_formation.simulation.motion import Motion
+from drake_formation.simulation.result import series_of
+from drake_formation.simulation.series import Series
+from drake_formation.systems.consensus_error import consensus_errors
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -14,6 +24,8 @@ Array = NDArray[np.float64]
 
 SETTLED = 0.02
 """A robot has settled when it stays within this share of the distance to the goal."""
+SETTLED_AT_LEAST = 1e-3
+"""It need not come nearer than this (m), also where the goal is where the formation is already."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,8 +38,9 @@ class Metrics:
         peak_force_n: largest control force of any robot, springs excluded (N).
         min_clearance_m: least distance between a robot and an obstacle (m); None without obstacles.
         max_spring_strain: largest |d/r − 1| of any spring; None without springs.
-        settling_time_s: time from the hand-off until every robot stays within 2 % of the distance to the goal about
-            its slot there (s); None where that does not happen.
+        settling_time_s: time from the hand-off until every robot stays near its slot at the goal (s): within 2 % of
+            the distance from where the formation gathers to the goal, or within a millimetre where that is more, as
+            where it is carried nowhere; 0 where no robot is ever further off, None where one is at the end.
     """
 
     tracking_error_m: list[float]
@@ -49,16 +62,17 @@ def metrics(result: "xr.Dataset") -> Metrics:
         result: from :func:`drake_formation.simulate`, or read from ``result.nc``.
 
     Raises:
-        ValueError: the result ends before the transport begins.
+        ValueError: the result ends before the transport begins, or is none of this version.
+        ScenarioError: its scenario is none of this version.
     """
-    return measure({str(name): variable.values for name, variable in result.variables.items()})
+    return measure(series_of(result))
 
 
-def measure(series: Mapping[str, Array]) -> Metrics:
+def measure(series: Series) -> Metrics:
     """Measure a run that is not labelled.
 
     Args:
-        series: variables of a labelled result as arrays, as :meth:`PreparedRun.run` gives them.
+        series: from :meth:`drake_formation.simulation.PreparedRun.run`.
 
     Raises:
         ValueError: the run ends before the transport begins.
@@ -66,15 +80,21 @@ def measure(series: Mapping[str, Array]) -> Metrics:
     transport = series["phase"] == 1
     if not transport.any():
         raise ValueError("the result has no transport phase to measure")
-    clearance, strain = series["clearance"][transport], series["spring_length"][transport] / series["rest_length"] - 1
-    return Metrics(
-        tracking_error_m=[float(x) for x in _length(series["deviation"][transport]).max(axis=0)],
-        consensus_error_m=float(_length(series["consensus_error"][transport]).max()),
-        peak_force_n=float(_length(series["control_force"][transport]).max()),
-        min_clearance_m=float(clearance.min()) if clearance.size else None,
-        max_spring_strain=float(abs(strain).max()) if strain.size else None,
-        settling_time_s=_settling_time(series, transport),
-    )
+    scenario = series.scenario
+    with np.errstate(over="ignore", invalid="ignore"):  # as in lengths
+        robots = _motion(series, transport, "position", "velocity", "acceleration")
+        deviation = _motion(series, transport, "deviation", "deviation_velocity", "deviation_acceleration")
+        bulge = robots.bulge()
+        return Metrics(
+            tracking_error_m=[float(x) for x in longest(_places(deviation, deviation.bulge()), each=True)],
+            consensus_error_m=float(longest(_consensus_errors(robots, bulge, series["slot"]))[0]),
+            peak_force_n=float(longest(_control_forces(robots, series["control_force"][transport], scenario))[0]),
+            min_clearance_m=_clearance(robots, bulge, series["obstacle_position"], series["obstacle_radius"]),
+            max_spring_strain=_strain(
+                robots, bulge, graphs.edges(derive.spring_graph(scenario)), series["rest_length"]
+            ),
+            settling_time_s=_settling_time(robots, bulge, series),
+        )
 
 
 def length(vectors: "xr.DataArray") -> "xr.DataArray":
@@ -92,14 +112,69 @@ def _length(vectors: Array) -> Array:
     return lengths
 
 
-def _settling_time(series: Mapping[str, Array], transport: NDArray[np.bool_]) -> float | None:
+def _motion(series: Series, samples: NDArray[np.bool_], *names: str) -> Motion:
+    return Motion(series["time"][samples], *(series[name][samples] for name in names))
+
+
+def _places(points: Motion, bulge: Array, law: Callable[[Array], Array] = lambda position: position) -> Vectors:
+    """Vectors that follow from positions alone, and leave a chord by no more than is said."""
+    return Vectors(points, lambda _time, position, _velocity: law(position), law(points.position), bulge)
+
+
+def _consensus_errors(robots: Motion, bulge: Array, slots: Array) -> Vectors:
+    return _places(
+        robots, bulge + bulge.mean(axis=1, keepdims=True), lambda position: consensus_errors(position, slots)
+    )
+
+
+def _control_forces(robots: Motion, recorded: Array, scenario: Scenario) -> Vectors:
+    """Control forces as recorded (N), and by the blocks' laws in between.
+
+    They have no second derivatives to go by. A step's chord is taken to be left by twice what it is half-way.
+    """
+    law = ControlLaw(scenario, block_parameters(scenario))
+    steps = np.arange(len(robots.times) - 1)
+    position, velocity, _ = robots.at(steps, np.full((len(steps), 1), 0.5))
+    middle = law(0.5 * (robots.times[:-1] + robots.times[1:]), position[:, 0], velocity[:, 0])
+    return Vectors(robots, law, recorded, _length(recorded[:-1] - 2 * middle + recorded[1:]))
+
+
+def _clearance(robots: Motion, bulge: Array, centres: Array, radii: Array) -> float | None:
+    """Least distance of any robot to any obstacle (m), or None."""
+    if not len(radii):
+        return None
+    count = robots.position.shape[1]
+
+    def to_centres(position: Array) -> Array:
+        apart: Array = position[..., :, None, :] - centres
+        return apart.reshape(*position.shape[:-2], -1, 2)
+
+    pairs = _places(robots, np.repeat(bulge, len(radii), axis=1), to_centres)
+    return float(shortest(pairs, np.tile(radii, count))[0])
+
+
+def _strain(robots: Motion, bulge: Array, springs: list[tuple[int, int]], rest_lengths: Array) -> float | None:
+    """Largest share by which any spring is longer or shorter than at rest, or None."""
+    if not springs:
+        return None
+    first, second = [i for i, _ in springs], [j for _, j in springs]
+
+    def lengths(position: Array) -> Array:
+        return (position[..., first, :] - position[..., second, :]) / rest_lengths[:, None]
+
+    shares = _places(robots, (bulge[:, first] + bulge[:, second]) / rest_lengths, lengths)
+    return float(max(longest(shares)[0] - 1, 1 - shortest(shares)[0]))
+
+
+def _settling_time(robots: Motion, bulge: Array, series: Series) -> float | None:
     """Time from the start of the transport until every robot stays near its slot at the goal (s), or None."""
     travelled = float(_length(series["goal"] - series["aggregation_centre"]))
     goals = series["slot"] + series["goal"]
-    outside = np.flatnonzero(_length(series["position"][transport] - goals).max(axis=1) > SETTLED * travelled)
-    time = series["time"][transport]
-    if not len(outside):
+    short = _places(robots, bulge, lambda position: position - goals)
+    last = last_beyond(short, max(SETTLED * travelled, SETTLED_AT_LEAST))
+    if last is None:
         return 0.0
-    if outside[-1] == len(time) - 1:
+    step, share = last
+    if step == len(robots.times) - 1:
         return None
-    return float(time[outside[-1] + 1] - time[0])
+    return float(robots.times[step] + share * (robots.times[step + 1] - robots.times[step]) - robots.times[0])

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import xarray as xr
 
+from drake_formation.check import Check
 from drake_formation.diagram import build_diagram
 from drake_formation.metrics import Metrics
 from drake_formation.scenario import Scenario, to_yaml
@@ -59,6 +60,14 @@ def write_run(folder: Path, scenario: Scenario, result: xr.Dataset, figures: Met
         diagram = build_diagram(scenario)
         for suffix in (".dot", ".svg"):
             write_diagram(diagram, partial / f"diagram{suffix}")
+
+
+def write_check(folder: Path, check: Check) -> None:
+    """Add what a check says to the metrics of a run that is written, under the key ``check``."""
+    figures = json.loads((folder / METRICS).read_text(encoding="utf-8"))
+    partial = folder / f".{METRICS}"
+    partial.write_text(json.dumps(figures | {"check": check.to_dict()}, indent=2) + "\n", encoding="utf-8")
+    partial.replace(folder / METRICS)
 
 
 def write_failed_run(folder: Path, scenario: Scenario, partial_result: xr.Dataset, reason: str) -> Path:

@@ -259,7 +259,9 @@ class Simulation(Section):
     integration_scheme: str = Field(default="runge_kutta5", description="one of Drake's integration schemes")
     max_step_size: Positive = Field(default=0.1, description="largest step (s)")
     accuracy: Positive = Field(
-        default=1e-6, description="target accuracy of an error-controlled step; chosen: positions within 1e-4 m"
+        default=1e-6,
+        description="largest estimated error of any state (m, m/s) in one step of an integrator with error control; "
+        "what errors grow to in a run is up to the scenario: run --check says; chosen: 1e-6",
     )
     use_error_control: bool = Field(
         default=True,

@@ -1,24 +1,23 @@
 """Run a scenario: aggregation, hand-off, transport, and the obstacle-free response."""
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
-from pydrake.systems.framework import Context
+from pydrake.systems.framework import Context, Diagram
 
 from drake_formation.diagram import build_diagram
+from drake_formation.lowering.errors import LoweringError
 from drake_formation.parameters import Parameters, block_parameters, structure, write_parameters
 from drake_formation.scenario import Scenario, derive, require_sound
-from drake_formation.simulation.engines import ENGINES, Engine
+from drake_formation.simulation.choice import Choice, choose
+from drake_formation.simulation.engines import ENGINES, Engine, Start
+from drake_formation.simulation.phases import Progress, felt_obstacles, without_obstacles
 from drake_formation.simulation.recorder import NonFiniteStateError, Recording
 from drake_formation.simulation.result import labelled_result
 from drake_formation.simulation.series import Series, time_series
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Progress = Callable[[float], None]
-"""Called with how much simulated time is done, from 0 to :func:`simulated_duration` (s)."""
 
 
 class SimulationError(RuntimeError):
@@ -37,7 +36,10 @@ class SimulationError(RuntimeError):
         self.partial = partial
 
 
-def simulate(scenario: Scenario, *, engine: str = "blocks", progress: Progress | None = None) -> "xr.Dataset":
+AUTO = "auto"
+
+
+def simulate(scenario: Scenario, *, engine: str = AUTO, progress: Progress | None = None) -> "xr.Dataset":
     """Run a scenario from its initial state to its end.
 
     Where there are obstacles, the transport is run once more from the hand-off without them: the deviation from that
@@ -45,20 +47,23 @@ def simulate(scenario: Scenario, *, engine: str = "blocks", progress: Progress |
 
     Args:
         scenario: what to run.
-        engine: ``blocks``, the diagram on Drake's Simulator; or ``compiled``, code derived from the same diagram, for
-            ``runge_kutta5`` only.
+        engine: ``blocks``, the diagram on Drake's Simulator, which is the reference; ``compiled``, code derived from
+            the same diagram, or ``exponential``, which integrates the linear part of that code exactly, both in place
+            of ``runge_kutta5`` only; or ``auto``, the blocks where they are done before they could be compiled or
+            cannot be compiled, else the compiled ones (:mod:`drake_formation.simulation.choice`).
         progress: called as the simulated time goes on.
 
     Returns:
-        The labelled result; see :func:`drake_formation.simulation.result.labelled_result`.
+        The labelled result; see :func:`drake_formation.simulation.result.labelled_result`. Its attribute ``engine``
+        names what ran it, and ``engine_reason`` why, where that was chosen.
 
     Raises:
         ValueError: there is no such engine.
-        ScenarioError: the scenario is wrong, or asks for an integrator that the compiled engine does not have.
-        LoweringError: a block of the diagram cannot be compiled.
+        ScenarioError: the scenario is wrong, or asks for what the engine named does not have.
+        LoweringError: a block of the diagram cannot be compiled by the engine named.
         SimulationError: the run diverged or the integrator gave up; it carries what was recorded.
     """
-    return labelled_result(scenario, PreparedRun(scenario, engine=engine).run(scenario, progress=progress))
+    return labelled_result(PreparedRun(scenario, engine=engine).run(scenario, progress=progress))
 
 
 class PreparedRun:
@@ -68,18 +73,23 @@ class PreparedRun:
 
     Args:
         scenario: gives the structure; see :func:`drake_formation.parameters.structure`.
-        engine: as for :func:`simulate`.
+        engine: as for :func:`simulate`; ``auto`` goes by this scenario.
+
+    Attributes:
+        diagram: the diagram.
+        structure: of the scenarios it runs.
+        choice: what runs them, and why where that was chosen.
 
     Raises:
         ValueError, ScenarioError, LoweringError: as for :func:`simulate`.
     """
 
-    def __init__(self, scenario: Scenario, *, engine: str = "blocks") -> None:
-        if engine not in ENGINES:
-            raise ValueError(f"no engine {engine!r}; there are {', '.join(ENGINES)}")
+    def __init__(self, scenario: Scenario, *, engine: str = AUTO) -> None:
+        if engine not in (AUTO, *ENGINES):
+            raise ValueError(f"no engine {engine!r}; there are {', '.join((AUTO, *ENGINES))}")
         self.diagram = build_diagram(scenario)
         self.structure = structure(scenario)
-        self._start = ENGINES[engine](self.diagram)
+        self.choice, self._start = _chosen(scenario, self.diagram) if engine == AUTO else _asked(engine, self.diagram)
         self._context = self.diagram.CreateDefaultContext()
 
     def run(self, scenario: Scenario, *, progress: Progress | None = None) -> Series:
@@ -126,9 +136,9 @@ class PreparedRun:
             at_hand_off = run.context.Clone() if felt_obstacles(scenario) else None
             run.advance(end)
         except _FAILURES as failure:
-            raise _simulation_error(scenario, run, run.recording, None, failure) from failure
+            raise _simulation_error(run, self._series(scenario, run.recording, None), failure) from failure
         if at_hand_off is None:
-            return time_series(scenario, run.recording, run.recording)
+            return self._series(scenario, run.recording, run.recording)
 
         write_parameters(self.diagram, at_hand_off, block_parameters(without_obstacles(scenario)))
         nominal = self._start(
@@ -137,14 +147,19 @@ class PreparedRun:
         try:
             nominal.advance(end)
         except _FAILURES as failure:
-            raise _simulation_error(scenario, nominal, run.recording, nominal.recording, failure) from failure
-        series = time_series(scenario, run.recording, nominal.recording)
-        _require_clear(scenario, series)
+            raise _simulation_error(
+                nominal, self._series(scenario, run.recording, nominal.recording), failure
+            ) from failure
+        series = self._series(scenario, run.recording, nominal.recording)
+        _require_clear(series)
         return series
+
+    def _series(self, scenario: Scenario, run: Recording, nominal: Recording | None) -> Series:
+        return time_series(scenario, self.choice, run, nominal)
 
     def _initial_context(self, scenario: Scenario, parameters: Parameters) -> Context:
         context = self._context  # one for all runs, as making one takes as long as some runs
-        context.SetTime(0.0)
+        context.SetTime(scenario.simulator.start_time)
         self.diagram.SetDefaultContext(context)
         write_parameters(self.diagram, context, parameters)
         starts = derive.starts(scenario)
@@ -152,23 +167,20 @@ class PreparedRun:
         return context
 
 
-def simulated_duration(scenario: Scenario) -> float:
-    """How much time :func:`simulate` simulates in all (s)."""
-    repeats = 2 if felt_obstacles(scenario) else 1
-    return scenario.aggregation.duration + repeats * scenario.transport.duration
+def _chosen(scenario: Scenario, diagram: Diagram) -> tuple[Choice, Start]:
+    """The fastest engine for a scenario, made ready; the blocks where another does not get ready."""
+    choice = choose(scenario)
+    try:
+        return choice, ENGINES[choice.engine](diagram)
+    except LoweringError as error:
+        return _asked("blocks", diagram, str(error))
 
 
-def felt_obstacles(scenario: Scenario) -> bool:
-    """Whether any obstacle exerts a force."""
-    return bool(scenario.avoidance.obstacles) and scenario.avoidance.gain > 0
+def _asked(engine: str, diagram: Diagram, reason: str = "") -> tuple[Choice, Start]:
+    return Choice(engine, reason), ENGINES[engine](diagram)
 
 
-def without_obstacles(scenario: Scenario) -> Scenario:
-    """The scenario in which no obstacle exerts a force; its structure is the same."""
-    return scenario.model_copy(update={"avoidance": scenario.avoidance.model_copy(update={"gain": 0.0})})
-
-
-def _require_clear(scenario: Scenario, series: Series) -> None:
+def _require_clear(series: Series) -> None:
     """A robot inside an obstacle feels no force there: say so instead of carrying on as if nothing were in its way."""
     hit = (series["clearance"] <= 0) & (series["phase"] == 1)[:, None, None]
     if not hit.any():
@@ -180,7 +192,7 @@ def _require_clear(scenario: Scenario, series: Series) -> None:
         "another place for the obstacle, or a larger avoidance.gain.",
         time,
         robot + 1,
-        labelled_result(scenario, series),
+        labelled_result(series),
     )
 
 
@@ -188,9 +200,7 @@ def _require_clear(scenario: Scenario, series: Series) -> None:
 _FAILURES = (RuntimeError, ArithmeticError, SystemExit)
 
 
-def _simulation_error(
-    scenario: Scenario, failed: Engine, run: Recording, nominal: Recording | None, failure: BaseException
-) -> SimulationError:
+def _simulation_error(failed: Engine, series: Series, failure: BaseException) -> SimulationError:
     """Say when, which robot, why and what to try."""
     time = failed.recording.times[-1] if len(failed.recording.times) else failed.context.get_time()
     robot = _culprit(failed)
@@ -200,8 +210,8 @@ def _simulation_error(
         OverflowError: "its forces grew beyond all bounds",
     }
     reason = reasons.get(type(failure), f"the integrator gave up ({failure})")
-    message = f"the run stopped at t = {time:.6g} s at robot {robot}: {reason}. Try {_advice(scenario, failed)}."
-    return SimulationError(message, float(time), robot, labelled_result(scenario, time_series(scenario, run, nominal)))
+    message = f"the run stopped at t = {time:.6g} s at robot {robot}: {reason}. Try {_advice(series.scenario, failed)}."
+    return SimulationError(message, float(time), robot, labelled_result(series))
 
 
 def _advice(scenario: Scenario, run: Engine) -> str:

@@ -94,8 +94,7 @@ def position_difference(first: Series, second: Series) -> float:
         motions = [_motion(series, phase) for series in (first, second)]
         if all(len(motion.times) for motion in motions):
             apart = _difference(*motions)
-            places = Vectors(apart, lambda _time, position, _velocity: position, apart.position, apart.bulge())
-            largest += longest(places).tolist()
+            largest += longest(Vectors.of_positions(apart, apart.bulge())).tolist()
     return max(largest)
 
 

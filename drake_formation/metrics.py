@@ -1,6 +1,5 @@
 """The figures by which a run is judged, each over the transport phase, between its samples too."""
 
-from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +9,7 @@ from numpy.typing import NDArray
 from drake_formation.formation import graphs
 from drake_formation.parameters import block_parameters
 from drake_formation.scenario import Scenario, derive
+from drake_formation.simulation.clearance import least_clearance
 from drake_formation.simulation.extremes import Vectors, last_beyond, longest, shortest
 from drake_formation.simulation.laws import ControlLaw
 from drake_formation.simulation.motion import Motion
@@ -86,10 +86,10 @@ def measure(series: Series) -> Metrics:
         deviation = _motion(series, transport, "deviation", "deviation_velocity", "deviation_acceleration")
         bulge = robots.bulge()
         return Metrics(
-            tracking_error_m=[float(x) for x in longest(_places(deviation, deviation.bulge()), each=True)],
+            tracking_error_m=[float(x) for x in longest(Vectors.of_positions(deviation, deviation.bulge()), each=True)],
             consensus_error_m=float(longest(_consensus_errors(robots, bulge, series["slot"]))[0]),
             peak_force_n=float(longest(_control_forces(robots, series["control_force"][transport], scenario))[0]),
-            min_clearance_m=_clearance(robots, bulge, series["obstacle_position"], series["obstacle_radius"]),
+            min_clearance_m=least_clearance(robots, bulge, series["obstacle_position"], series["obstacle_radius"]),
             max_spring_strain=_strain(
                 robots, bulge, graphs.edges(derive.spring_graph(scenario)), series["rest_length"]
             ),
@@ -116,13 +116,8 @@ def _motion(series: Series, samples: NDArray[np.bool_], *names: str) -> Motion:
     return Motion(series["time"][samples], *(series[name][samples] for name in names))
 
 
-def _places(points: Motion, bulge: Array, law: Callable[[Array], Array] = lambda position: position) -> Vectors:
-    """Vectors that follow from positions alone, and leave a chord by no more than is said."""
-    return Vectors(points, lambda _time, position, _velocity: law(position), law(points.position), bulge)
-
-
 def _consensus_errors(robots: Motion, bulge: Array, slots: Array) -> Vectors:
-    return _places(
+    return Vectors.of_positions(
         robots, bulge + bulge.mean(axis=1, keepdims=True), lambda position: consensus_errors(position, slots)
     )
 
@@ -139,20 +134,6 @@ def _control_forces(robots: Motion, recorded: Array, scenario: Scenario) -> Vect
     return Vectors(robots, law, recorded, _length(recorded[:-1] - 2 * middle + recorded[1:]))
 
 
-def _clearance(robots: Motion, bulge: Array, centres: Array, radii: Array) -> float | None:
-    """Least distance of any robot to any obstacle (m), or None."""
-    if not len(radii):
-        return None
-    count = robots.position.shape[1]
-
-    def to_centres(position: Array) -> Array:
-        apart: Array = position[..., :, None, :] - centres
-        return apart.reshape(*position.shape[:-2], -1, 2)
-
-    pairs = _places(robots, np.repeat(bulge, len(radii), axis=1), to_centres)
-    return float(shortest(pairs, np.tile(radii, count))[0])
-
-
 def _strain(robots: Motion, bulge: Array, springs: list[tuple[int, int]], rest_lengths: Array) -> float | None:
     """Largest share by which any spring is longer or shorter than at rest, or None."""
     if not springs:
@@ -162,7 +143,7 @@ def _strain(robots: Motion, bulge: Array, springs: list[tuple[int, int]], rest_l
     def lengths(position: Array) -> Array:
         return (position[..., first, :] - position[..., second, :]) / rest_lengths[:, None]
 
-    shares = _places(robots, (bulge[:, first] + bulge[:, second]) / rest_lengths, lengths)
+    shares = Vectors.of_positions(robots, (bulge[:, first] + bulge[:, second]) / rest_lengths, lengths)
     return float(max(longest(shares)[0] - 1, 1 - shortest(shares)[0]))
 
 
@@ -170,7 +151,7 @@ def _settling_time(robots: Motion, bulge: Array, series: Series) -> float | None
     """Time from the start of the transport until every robot stays near its slot at the goal (s), or None."""
     travelled = float(_length(series["goal"] - series["aggregation_centre"]))
     goals = series["slot"] + series["goal"]
-    short = _places(robots, bulge, lambda position: position - goals)
+    short = Vectors.of_positions(robots, bulge, lambda position: position - goals)
     last = last_beyond(short, max(SETTLED * travelled, SETTLED_AT_LEAST))
     if last is None:
         return 0.0

@@ -42,6 +42,17 @@ class Vectors:
     samples: Array
     bulge: Array
 
+    @classmethod
+    def of_positions(cls, motion: Motion, bulge: Array, law: Callable[[Array], Array] = lambda x: x) -> "Vectors":
+        """Vectors that follow from positions alone.
+
+        Args:
+            motion: of some points.
+            bulge: how far each vector leaves the chord of each step at the most, shape (samples − 1, vectors).
+            law: from positions (m), shape (..., points, 2), to vectors, shape (..., vectors, 2).
+        """
+        return cls(motion, lambda _times, position, _velocity: law(position), law(motion.position), bulge)
+
     def within(self, step: Indices, share: Array) -> Array:
         """Their values within some steps.
 
@@ -64,10 +75,10 @@ def longest(vectors: Vectors, *, each: bool = False) -> Array:
     return _extreme(vectors, 1.0, nothing, lambda begin, end: np.maximum(_length(begin), _length(end)), each)
 
 
-def shortest(vectors: Vectors, radii: Array | float = 0.0) -> Array:
-    """The least length of any vector at any time, shape (1,), after something is taken from each, shape (vectors,)."""
+def shortest(vectors: Vectors, radii: Array | float = 0.0, *, each: bool = False) -> Array:
+    """The same of the least length, after something is taken from it, shape (vectors,)."""
     less = np.broadcast_to(radii, vectors.samples.shape[1:2])
-    return -_extreme(vectors, -1.0, less, lambda begin, end: -_chord_distance(begin, end), each=False)
+    return -_extreme(vectors, -1.0, less, lambda begin, end: -_chord_distance(begin, end), each)
 
 
 def last_beyond(vectors: Vectors, bound: float) -> tuple[int, float] | None:

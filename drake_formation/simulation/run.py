@@ -10,6 +10,7 @@ from drake_formation.lowering.errors import LoweringError
 from drake_formation.parameters import Parameters, block_parameters, structure, write_parameters
 from drake_formation.scenario import Scenario, derive, require_sound
 from drake_formation.simulation.choice import Choice, choose
+from drake_formation.simulation.clearance import contact
 from drake_formation.simulation.engines import ENGINES, Engine, Start
 from drake_formation.simulation.phases import Progress, felt_obstacles, without_obstacles
 from drake_formation.simulation.recorder import NonFiniteStateError, Recording
@@ -182,11 +183,10 @@ def _asked(engine: str, diagram: Diagram, reason: str = "") -> tuple[Choice, Sta
 
 def _require_clear(series: Series) -> None:
     """A robot inside an obstacle feels no force there: say so instead of carrying on as if nothing were in its way."""
-    hit = (series["clearance"] <= 0) & (series["phase"] == 1)[:, None, None]
-    if not hit.any():
+    found = contact(series)
+    if found is None:
         return
-    sample, robot, obstacle = (int(index[0]) for index in np.nonzero(hit))
-    time = float(series["time"][sample])
+    time, robot, obstacle = found
     raise SimulationError(
         f"robot {robot + 1} is inside obstacle {obstacle + 1} at t = {time:.6g} s. Try other starting positions, "
         "another place for the obstacle, or a larger avoidance.gain.",

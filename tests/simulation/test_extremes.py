@@ -8,7 +8,7 @@ from drake_formation.simulation.motion import Motion
 
 
 def places(motion):
-    return Vectors(motion, lambda _time, position, _velocity: position, motion.position, motion.bulge())
+    return Vectors.of_positions(motion, motion.bulge())
 
 
 def lengths(motion):

@@ -19,13 +19,16 @@ if TYPE_CHECKING:
     from drake_formation.parameters import set_parameters
     from drake_formation.scenario import Scenario, ScenarioError, load_scenario, with_overrides
     from drake_formation.simulation import SimulationError, simulate
+    from drake_formation.simulation.check import Check, check
 
 __all__ = [
+    "Check",
     "Metrics",
     "Scenario",
     "ScenarioError",
     "SimulationError",
     "build_diagram",
+    "check",
     "load_scenario",
     "metrics",
     "set_parameters",
@@ -38,6 +41,7 @@ _HOMES = {
     "set_parameters": "parameters",
     **dict.fromkeys(["Scenario", "ScenarioError", "load_scenario", "with_overrides"], "scenario"),
     **dict.fromkeys(["SimulationError", "simulate"], "simulation"),
+    **dict.fromkeys(["Check", "check"], "simulation.check"),
 }
 
 

@@ -2,13 +2,15 @@
 
 import json
 import os
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
@@ -25,6 +27,8 @@ from drake_formation.terminal import FAILED_RUN, INTERRUPTED, WRONG_INPUT, Stopp
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from drake_formation.simulation.check import Check
 
 app = typer.Typer(
     help="Cooperative transport by hierarchical decentralized LQR, as a Drake block diagram.",
@@ -49,15 +53,21 @@ def _path(text: str) -> Path:
 class EngineName(StrEnum):
     """What carries a run out."""
 
+    AUTO = "auto"
     BLOCKS = "blocks"
     COMPILED = "compiled"
     EXPONENTIAL = "exponential"
 
 
-Engine = Annotated[
-    EngineName,
-    typer.Option(help="The block diagram itself, or code compiled from it, integrated by steps or exponentially."),
-]
+class SweepEngineName(StrEnum):
+    """What carries the runs of a sweep out; over many runs, compiling pays."""
+
+    BLOCKS = "blocks"
+    COMPILED = "compiled"
+    EXPONENTIAL = "exponential"
+
+
+ENGINES_HELP = "The block diagram itself, or code compiled from it, integrated by steps or exponentially"
 
 
 class ExecutorName(StrEnum):
@@ -85,12 +95,15 @@ def run(
     out: Annotated[
         Path | None, typer.Option(parser=_path, metavar="FOLDER", help="For the results; out/NAME if not given.")
     ] = None,
-    engine: Engine = EngineName.BLOCKS,
+    engine: Annotated[
+        EngineName, typer.Option(help=f"{ENGINES_HELP}; auto: blocks or compiled, whichever is done first.")
+    ] = EngineName.AUTO,
+    check: Annotated[bool, typer.Option("--check", help="Run it again, more accurately, and compare.")] = False,
 ) -> None:
     """Run a scenario and write its metrics, result, diagram and figures."""
     from drake_formation.lowering.errors import LoweringError
     from drake_formation.metrics import metrics
-    from drake_formation.output import PICTURES, RUN, write_failed_run, write_run
+    from drake_formation.output import PICTURES, RUN, write_check, write_failed_run, write_run
     from drake_formation.places import OutputError, reserved
     from drake_formation.simulation import SimulationError
 
@@ -105,9 +118,12 @@ def run(
                 recorded = f"What was recorded until then is in {kept.folder}."
                 stop("\n".join([str(error), *kept.remarks(), recorded]), FAILED_RUN)
             written = write_run(place, resolved, result, figures)
+        checked = _check_with_progress(resolved, result) if check else None
+        if checked:
+            write_check(written.folder, checked)
     except (OutputError, LoweringError) as error:
         stop(str(error), WRONG_INPUT)
-    say(_summary(resolved, figures.to_dict()))
+    say(_summary(result, figures.to_dict(), checked))
     say("\n".join([*written.remarks(), f"Results in {written.folder}, pictures in {written.folder / PICTURES}."]))
 
 
@@ -117,7 +133,7 @@ def sweep(
     out: Annotated[
         Path, typer.Option(parser=_path, metavar="FOLDER", help="For the runs, the dataset and its figures.")
     ],
-    engine: Engine = EngineName.COMPILED,
+    engine: Annotated[SweepEngineName, typer.Option(help=f"{ENGINES_HELP}.")] = SweepEngineName.COMPILED,
     executor: Annotated[ExecutorName, typer.Option(help="This process, or several.")] = ExecutorName.PROCESSES,
     workers: Annotated[int | None, typer.Option(min=1, help="Number of processes; default: of processors.")] = None,
     scheduler: Annotated[
@@ -267,9 +283,28 @@ def scenarios() -> None:
 
 
 def _simulate_with_progress(scenario: Scenario, engine: EngineName) -> "xr.Dataset":
-    from drake_formation.simulation import simulate, simulated_duration
+    from drake_formation.simulation import simulate
 
-    total = simulated_duration(scenario)
+    with _progress(scenario, scenario.name) as progress:
+        return simulate(scenario, engine=engine.value, progress=progress)
+
+
+def _check_with_progress(scenario: Scenario, result: "xr.Dataset") -> "Check":
+    from drake_formation.simulation import SimulationError
+    from drake_formation.simulation.check import check
+
+    try:
+        with _progress(scenario, f"check of {scenario.name}") as progress:
+            return check(scenario, result, progress=progress)
+    except SimulationError as error:
+        stop(f"The run is complete, but its check is not: {error}", FAILED_RUN)
+
+
+@contextmanager
+def _progress(scenario: Scenario, name: str) -> Iterator[Callable[[float], None]]:
+    """A bar on standard error that goes on with the simulated time."""
+    from drake_formation.simulation import simulated_duration
+
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -277,11 +312,11 @@ def _simulate_with_progress(scenario: Scenario, engine: EngineName) -> "xr.Datas
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task(scenario.name, total=total)
-        return simulate(scenario, engine=engine.value, progress=lambda time: progress.update(task, completed=time))
+        task = progress.add_task(name, total=simulated_duration(scenario))
+        yield lambda time: progress.update(task, completed=time)
 
 
-def _summary(scenario: Scenario, figures: dict[str, Any]) -> Table:
+def _summary(result: "xr.Dataset", figures: dict[str, Any], check: "Check | None") -> Table:
     labels = {
         "tracking_error_m": ("largest tracking error, by robot", "m"),
         "consensus_error_m": ("largest consensus error", "m"),
@@ -290,9 +325,14 @@ def _summary(scenario: Scenario, figures: dict[str, Any]) -> Table:
         "max_spring_strain": ("largest spring strain", "1"),
         "settling_time_s": ("settled within 2 % after", "s"),
     }
-    table = Table("metric", "value", "unit", title=f"{scenario.name}, transport")
+    reason = result.attrs.get("engine_reason", "as asked for")
+    caption = escape(f"engine {result.attrs['engine']}: {reason}")
+    columns = ("metric", "value", "unit") + (("check differs by",) if check else ())
+    table = Table(*columns, title=f"{result.attrs['title']}, transport", caption=caption)
     for name, (label, unit) in labels.items():
-        table.add_row(label, _number(figures[name]), unit)
+        table.add_row(label, _number(figures[name]), unit, *([_number(check.metrics[name])] if check else []))
+    if check:
+        table.add_row("positions at any time", "", "m", _number(check.position_difference_m))
     return table
 
 

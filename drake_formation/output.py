@@ -12,6 +12,7 @@ from drake_formation.diagram import build_diagram
 from drake_formation.metrics import Metrics
 from drake_formation.places import Kind, Place
 from drake_formation.scenario import Scenario, to_yaml
+from drake_formation.simulation.check import Check
 from drake_formation.viz.graphviz import write_diagram
 from drake_formation.viz.style import attempt_each
 
@@ -62,6 +63,14 @@ def write_run(place: Place, scenario: Scenario, result: xr.Dataset, figures: Met
         return attempt_each(draw) | _draw_figures(folder, result)
 
     return written(place, write)
+
+
+def write_check(folder: Path, check: Check) -> None:
+    """Add what a check says to the metrics of a run that is written, under the key ``check``."""
+    figures = json.loads((folder / METRICS).read_text(encoding="utf-8"))
+    partial = folder / f".{METRICS}"
+    partial.write_text(json.dumps(figures | {"check": check.to_dict()}, indent=2) + "\n", encoding="utf-8")
+    partial.replace(folder / METRICS)
 
 
 def write_failed_run(place: Place, scenario: Scenario, partial_result: xr.Dataset, reason: str) -> Written:

@@ -1,111 +1,172 @@
+"""Metrics of a run are those of the motion, however far apart its samples are."""
+
+import functools
 import json
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from drake_formation.metrics import Metrics, length, metrics
+from drake_formation import load_scenario, simulate
+from drake_formation.metrics import Metrics, length, measure, metrics
+from drake_formation.simulation import PreparedRun
 
-VECTOR = ("time", "robot", "axis")
-TIMES = [0.0, 1.0, 2.0, 3.0, 5.0]
+SHORT = {"aggregation.duration": 5.0, "transport.duration": 15.0}
+STEEL = {"aggregation.duration": 5.0, "transport.duration": 4.0, "springs.stiffness": 3e4}
+STRONG = {"springs.stiffness": 3e4, "consensus.delta": 1e4}
+QUICK = {"tracking.R": 0.01}  # it settles soon
+NEAR = [{"position": [6.0, 5.05]}, {"position": [9.0, 2.4], "radius": 0.1}]
+CASES = {
+    "rubber": ("line", SHORT | QUICK),
+    "steel": ("line", STEEL),
+    "steel and consensus": ("line", {"aggregation.duration": 20.0, "transport.duration": 4.0} | STRONG),
+    "near obstacles": ("line", SHORT | {"avoidance.obstacles": NEAR, "aggregation.duration": 0.0} | QUICK),
+    "a nearest robot that senses": ("line", SHORT | {"avoidance.sensing": "nearest"} | QUICK),
+    "a trajectory": ("s_curve", SHORT),
+}
+RINGING = {"steel", "steel and consensus"}
 
 
-def result(springs=1, obstacles=1, **changes):
-    """Two robots: one sample of aggregation with huge numbers, then four of transport, 10 m to the goal."""
-    still = np.zeros((5, 2, 2))
-    variables = {
-        "phase": ("time", [0, 1, 1, 1, 1]),
-        "position": (VECTOR, np.array([[0.0, -0.5], [0.0, 0.5]]) + [[[x, 0.0]] for x in (-9.0, 0.0, 9.0, 9.9, 10.0)]),
-        "slot": (("robot", "axis"), [[0.0, -0.5], [0.0, 0.5]]),
-        "goal": ("axis", [10.0, 0.0]),
-        "aggregation_centre": ("axis", [0.0, 0.0]),
-        "deviation": (VECTOR, still),
-        "consensus_error": (VECTOR, still),
-        "control_force": (VECTOR, still),
-        "clearance": (("time", "robot", "obstacle"), np.ones((5, 2, obstacles))),
-        "spring_length": (("time", "spring"), np.ones((5, springs))),
-        "rest_length": ("spring", np.ones(springs)),
+def sampled(result):
+    """The metrics of a result by its samples alone."""
+    carried = result.isel(time=result["phase"].values == 1)
+    longest = {n: length(carried[n]).values for n in ("deviation", "consensus_error", "control_force")}
+    strain = np.abs(carried["spring_length"] / carried["rest_length"] - 1).values
+    way = float(length(carried["goal"] - carried["aggregation_centre"]))
+    far = length(carried["position"] - carried["slot"] - carried["goal"]).max("robot").values > 0.02 * way
+    since = carried["time"].values - carried["time"].values[0]
+    return Metrics(
+        tracking_error_m=longest["deviation"].max(axis=0).tolist(),
+        consensus_error_m=float(longest["consensus_error"].max()),
+        peak_force_n=float(longest["control_force"].max()),
+        min_clearance_m=float(carried["clearance"].min()) if carried.sizes["obstacle"] else None,
+        max_spring_strain=float(strain.max()) if strain.size else None,
+        settling_time_s=None if far[-1] else float(since[np.flatnonzero(far)[-1] + 1]),
+    )
+
+
+@functools.cache
+def truth(case):
+    """The metrics of a far more accurate run, by samples that are 0.2 ms apart at the most."""
+    name, overrides = CASES[case]
+    fine = {"simulator.accuracy": 1e-10, "simulator.max_step_size": 2e-4}
+    return sampled(simulate(load_scenario(name, overrides=overrides | fine), engine="compiled"))
+
+
+def off(found, expected):
+    """How far metrics are off in units of what they may be: micrometres, share of the force, a millisecond."""
+    allowed = {
+        "tracking_error_m": 2e-5,
+        "consensus_error_m": 2e-6,
+        "peak_force_n": 2e-5 * expected.peak_force_n,
+        "min_clearance_m": 2e-6,
+        "max_spring_strain": 5e-6,
+        "settling_time_s": 1e-3,
     }
-    return xr.Dataset(variables | changes, {"time": TIMES})
+    pairs = {name: (found.to_dict()[name], value) for name, value in expected.to_dict().items()}
+    assert all((mine is None) == (value is None) for mine, value in pairs.values())
+    return {
+        name: float(np.abs(np.subtract(mine, value)).max()) / allowed[name]
+        for name, (mine, value) in pairs.items()
+        if value is not None
+    }
 
 
-def vectors(*values, before=999.0):
-    """Vectors of both robots at five samples, zero but for (time index, robot index, vector)."""
-    array = np.zeros((5, 2, 2))
-    array[0] = before
-    for time, robot, vector in values:
-        array[time, robot] = vector
-    return VECTOR, array
-
-
-def test_the_tracking_error_is_the_largest_deviation_of_each_robot():
-    deviation = vectors((1, 0, [0.03, 0.04]), (4, 1, [0.0, -0.2]), (3, 1, [0.1, 0.1]), before=np.nan)
-    assert metrics(result(deviation=deviation)).tracking_error_m == pytest.approx([0.05, 0.2])
-
-
-def test_the_consensus_error_is_the_largest_of_any_robot():
-    errors = vectors((1, 0, [0.3, -0.4]), (2, 1, [0.0, 0.2]))
-    assert metrics(result(consensus_error=errors)).consensus_error_m == pytest.approx(0.5)
-
-
-def test_the_peak_force_is_the_largest_of_any_robot():
-    forces = vectors((1, 0, [3.0, 4.0]), (4, 1, [-5.0, 12.0]))
-    assert metrics(result(control_force=forces)).peak_force_n == pytest.approx(13)
-
-
-def test_the_clearance_is_the_least_of_any_robot_to_any_obstacle():
-    clearance = np.full((5, 2, 3), 2.0)
-    clearance[0] = 0.1
-    clearance[3, 1, 2] = 0.7
-    measured = metrics(result(obstacles=3, clearance=(("time", "robot", "obstacle"), clearance)))
-    assert measured.min_clearance_m == 0.7
-
-
-@pytest.mark.parametrize("length", [1.5, 2.5])
-def test_the_strain_is_the_largest_share_of_any_spring_longer_or_shorter(length):
-    lengths = np.array([[9.0, 9.0], [1.0, 2.0], [1.1, 2.0], [1.0, length], [1.0, 2.0]])
-    measured = metrics(result(springs=2, spring_length=(("time", "spring"), lengths), rest_length=("spring", [1, 2])))
-    assert measured.max_spring_strain == pytest.approx(0.25)
-
-
-def test_without_springs_or_obstacles_there_is_nothing_to_measure():
-    measured = metrics(result(springs=0, obstacles=0))
-    assert measured.max_spring_strain is None
-    assert measured.min_clearance_m is None
-
-
-def moved(*distances):
-    """Both robots in formation, so far from the goal."""
-    return VECTOR, np.array([[0.0, -0.5], [0.0, 0.5]]) + [[[10.0 - x, 0.0]] for x in distances]
+def run(case, engine, accuracy):
+    name, overrides = CASES[case]
+    return simulate(load_scenario(name, overrides=overrides | {"simulator.accuracy": accuracy}), engine=engine)
 
 
 @pytest.mark.parametrize(
-    ("distances", "settled"),
-    [
-        pytest.param((9.0, 10.0, 0.21, 0.19, 0.0), 2.0, id="from the first near sample, counted from the hand-off"),
-        pytest.param((9.0, 10.0, 0.1, 0.3, 0.0), 4.0, id="not before the last time it is far"),
-        pytest.param((9.0, 0.1, 0.1, 0.1, 0.0), 0.0, id="at once"),
-        pytest.param((9.0, 10.0, 1.0, 0.1, 0.3), None, id="not when it is far at the end"),
-        pytest.param((0.0, 10.0, 10.0, 10.0, 10.0), None, id="never"),
-    ],
+    ("case", "engine"),
+    [(case, "compiled") for case in CASES] + [(case, "blocks") for case in CASES if case not in RINGING],
 )
-def test_a_run_has_settled_when_it_stays_within_two_percent_of_the_way(distances, settled):
-    assert metrics(result(position=moved(*distances))).settling_time_s == settled
+def test_metrics_are_those_of_the_motion(case, engine):
+    result = run(case, engine, 1e-8)
+    found = off(metrics(result), truth(case))
+    assert max(found.values()) < 1, found
+    assert max(off(sampled(result), truth(case)).values()) > 1, "its samples would have done: the test says nothing"
 
 
-def test_a_run_has_settled_when_its_last_robot_has():
-    _, position = moved(9.0, 10.0, 0.0, 0.0, 0.0)
-    position[2:4, 1, 1] += 0.3
-    assert metrics(result(position=(VECTOR, position))).settling_time_s == 4.0
+@pytest.mark.parametrize("case", sorted(CASES.keys() - RINGING))
+def test_the_exponential_engine_has_them_too(case):
+    found = off(metrics(run(case, "exponential", 1e-8)), truth(case))
+    assert max(found.values()) < 1, found
+
+
+@pytest.mark.parametrize("engine", ["blocks", "compiled"])
+@pytest.mark.parametrize("case", CASES)
+def test_at_the_default_accuracy_what_is_left_is_the_runs_own_error(case, engine):
+    found = off(metrics(run(case, engine, 1e-6)), truth(case))
+    assert max(found.values()) < 30, found
+
+
+def test_metrics_of_a_stored_result_are_those_of_the_run(tmp_path):
+    scenario = load_scenario("quadrilateral", overrides={"aggregation.duration": 1.0, "transport.duration": 3.0})
+    result = simulate(scenario, engine="compiled")
+    result.to_netcdf(tmp_path / "result.nc")
+    with xr.open_dataset(tmp_path / "result.nc") as stored:
+        assert metrics(stored) == metrics(result)
+    assert measure(PreparedRun(scenario, engine="compiled").run(scenario)) == metrics(result)
+
+
+def line(**overrides):
+    overrides = {"aggregation.duration": 2.0, "transport.duration": 3.0} | overrides
+    return metrics(simulate(load_scenario("line", overrides=overrides), engine="blocks"))
+
+
+def test_without_springs_or_obstacles_there_is_nothing_to_measure():
+    measured = line(**{"springs.graph": [], "avoidance.obstacles": []})
+    assert measured.max_spring_strain is None
+    assert measured.min_clearance_m is None
+    assert measured.tracking_error_m == [0, 0]
+
+
+def test_a_run_that_ends_far_from_the_goal_has_not_settled():
+    assert line().settling_time_s is None
+
+
+def test_a_formation_that_is_carried_nowhere_settles_within_a_millimetre():
+    gathered = {"robots.start": {"centre": [1.0, 2.0]}, "transport.goal": [1.0, 2.0], "avoidance.obstacles": []}
+    assert line(**gathered).settling_time_s == 0
+    displaced = gathered | {"robots.start": [[1.0, 1.4], [1.0, 2.6]], "aggregation.duration": 0.0}
+    quick = {"tracking.R": 0.01, "transport.duration": 30.0, "springs.stiffness": 0.0}
+    scenario = load_scenario("line", overrides=displaced | quick)
+    result = simulate(scenario, engine="compiled")
+    settled = metrics(result).settling_time_s
+    off_slot = length(result["position"] - result["slot"] - result["goal"]).max("robot")
+    assert 1 < settled < 30
+    assert float(off_slot.interp(time=settled)) == pytest.approx(1e-3, rel=0.02)
+
+
+DURATIONS = [0.0, 1e-300, 1e-15, 1e-9]
+
+
+@pytest.mark.parametrize("engine", ["blocks", "compiled"])
+@pytest.mark.parametrize("start", [0.0, 1e9])
+@pytest.mark.parametrize("transport", DURATIONS[1:])
+@pytest.mark.parametrize("aggregation", DURATIONS)
+def test_a_transport_of_no_time_at_all_has_its_first_sample(engine, start, aggregation, transport):
+    overrides = {"simulator.start_time": start, "transport.duration": transport, "aggregation.duration": aggregation}
+    result = simulate(load_scenario("line", overrides=overrides), engine=engine)
+    measured = metrics(result)
+    assert measured.tracking_error_m == pytest.approx([0, 0])
+    assert measured.peak_force_n == pytest.approx(24.083189, rel=1e-6)
 
 
 def test_a_result_without_transport_cannot_be_measured():
+    result = simulate(load_scenario("line", overrides={"aggregation.duration": 1.0, "transport.duration": 1.0}))
     with pytest.raises(ValueError, match="no transport"):
-        metrics(result(phase=("time", [0] * 5)))
+        metrics(result.isel(time=result["phase"].values == 0))
+
+
+def test_what_is_not_a_result_is_said_to_be_none():
+    with pytest.raises(ValueError, match=r"not a result of this version: it has no velocity, .*scenario"):
+        metrics(xr.Dataset({"position": ("time", [0.0])}))
 
 
 def test_metrics_are_plain_numbers():
-    measured = metrics(result())
+    measured = line()
     assert Metrics(**json.loads(json.dumps(measured.to_dict()))) == measured
 
 

@@ -199,8 +199,9 @@ class Simulation(Section):
     )
     accuracy: Positive = Field(
         default=1e-6,
-        description="largest error of any position (m) or velocity (m/s) in one step, not of the whole run; 1e-14 to "
-        "what the scheme knows as its loosest, 1e-3 for runge_kutta5; has no effect without error control",
+        description="largest estimated error of any position (m) or velocity (m/s) in one step, not of the whole run: "
+        "what errors grow to is up to the scenario, and run --check says; 1e-14 to what the scheme knows as its "
+        "loosest, 1e-3 for runge_kutta5; has no effect without error control; chosen: 1e-6",
     )
     use_error_control: bool = Field(
         default=True,

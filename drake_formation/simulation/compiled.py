@@ -76,7 +76,6 @@ class CompiledRun:
         self._lowered, self._method, self._progress = lowered, method, progress
         self._accuracy, self._max_step = settings.accuracy, settings.max_step_size
         self._updated_at = -np.inf
-        context.SetTime(context.get_time() or settings.start_time)
 
     def advance(self, end: float) -> None:
         """Go on to a time (s), updates due then not included.

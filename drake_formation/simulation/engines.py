@@ -84,8 +84,7 @@ class _Blocks:
         self.recording = Recorder(diagram, resolve(scenario).robots, progress)
         self._simulator = Simulator(diagram, context)
         config = SimulatorConfig(**scenario.simulator.model_dump())
-        # Drake's start_time overwrites the Context's, which may already be at the hand-off.
-        config.start_time = context.get_time() or config.start_time
+        config.start_time = context.get_time()  # Drake's would overwrite it, and it may be at the hand-off
         ApplySimulatorConfig(config, self._simulator)
         self._simulator.set_monitor(self.recording)
         self._started = False

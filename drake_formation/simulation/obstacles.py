@@ -77,11 +77,14 @@ def worst_leap(scenario: Scenario, recording: Recording) -> Leap | None:
         moved[:-1] = np.linalg.norm(np.diff(position, axis=0), axis=-1)  # more where the step went through an obstacle
     transport = (recording.phases == 1)[:, None]
     worst = None
-    for number, (x, y, radius) in enumerate(resolve(scenario).obstacles, start=1):
-        reach = radius + scenario.avoidance.range
+    formation = resolve(scenario)
+    ranges = np.array([getattr(part.config, "range", 0.0) for part in formation.parts["avoidance"]])
+    for number, (x, y, radius) in enumerate(formation.obstacles, start=1):
+        reach = radius + ranges
         near = _least_distance(position - [x, y], move) < reach
         for sample, robot in np.argwhere(transport & near & (np.maximum(length, moved) > SHARE * reach)):
-            shorter = SHARE * reach / max(length[sample, robot], 2.0 * SHARE * reach)
+            own = SHARE * reach[robot]
+            shorter = own / max(length[sample, robot], 2.0 * own)
             longest = float(steps[sample] * shorter)
             if worst is None or longest < worst.longest:
                 worst = Leap(float(times[sample]), int(robot) + 1, number, longest)

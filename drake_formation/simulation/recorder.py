@@ -11,7 +11,7 @@ from drake_formation.parameters import robot_name
 
 Array = NDArray[np.float64]
 
-RECORDED = ("state", "tracking_error", "tracking_force", "consensus_force", "avoidance_force")
+RECORDED = ("state", "tracking_error", "tracking_force", "consensus_force", "avoidance_force", "spring_force")
 """Output ports of every robot that a run records; the rest follows from them."""
 
 

@@ -5,7 +5,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drake_formation.scenario import Scenario, resolve, to_yaml
+from drake_formation.scenario import resolve, to_yaml
+from drake_formation.scenario.source import parse
+from drake_formation.scenario.validate import validate
+from drake_formation.simulation.choice import Choice
 from drake_formation.simulation.series import Series
 
 if TYPE_CHECKING:
@@ -15,13 +18,17 @@ VECTOR = ("time", "robot", "axis")
 VARIABLES = {
     "position": (VECTOR, "m", "position q in the world frame"),
     "velocity": (VECTOR, "m/s", "velocity v in the world frame"),
+    "acceleration": (VECTOR, "m/s²", "acceleration in the world frame"),
     "tracking_error": (VECTOR, "m", "distance to the reference, q - q_r (Eq. 9)"),
     "deviation": (VECTOR, "m", "deviation from the obstacle-free response"),
+    "deviation_velocity": (VECTOR, "m/s", "rate of the deviation"),
+    "deviation_acceleration": (VECTOR, "m/s²", "second rate of the deviation"),
     "consensus_error": (VECTOR, "m", "consensus error e (Eq. 19)"),
     "tracking_force": (VECTOR, "N", "local control u_l (Eq. 10)"),
     "consensus_force": (VECTOR, "N", "global control u_g (Eq. 15)"),
     "avoidance_force": (VECTOR, "N", "obstacle avoidance"),
     "control_force": (VECTOR, "N", "control u, the sum of the three (Eq. 8)"),
+    "spring_force": (VECTOR, "N", "what the springs exert on a robot"),
     "spring_length": (("time", "spring"), "m", "length d of a spring"),
     "rest_length": (("spring",), "m", "length r of a spring at rest"),
     "clearance": (("time", "robot", "obstacle"), "m", "distance to an obstacle"),
@@ -35,16 +42,17 @@ VARIABLES = {
 """Dimensions, unit and meaning of each variable."""
 
 
-def labelled_result(scenario: Scenario, series: Series) -> "xr.Dataset":
+def labelled_result(series: Series) -> "xr.Dataset":
     """Label what came out of a run.
 
     Args:
-        scenario: the scenario that ran.
         series: from :func:`drake_formation.simulation.series.time_series`.
 
     Returns:
         A dataset over ``time`` (every step of the integrator), ``robot`` (from 1), ``axis`` (x, y), ``spring``
-        (``1-2``) and ``obstacle`` (from 1). ``deviation`` is NaN before the hand-off.
+        (``1-2``) and ``obstacle`` (from 1). ``deviation`` is NaN before the hand-off. A sample
+        at the hand-off shows what is so from then on. Between samples the motion is the quintic with position,
+        velocity and acceleration at both ends; :func:`drake_formation.metrics` measures that.
     """
     import xarray as xr  # slow to import, and not needed to build a diagram
 
@@ -53,6 +61,7 @@ def labelled_result(scenario: Scenario, series: Series) -> "xr.Dataset":
         for name, (dimensions, units, meaning) in VARIABLES.items()
     }
     variables["phase"] = variables["phase"].astype(np.int8)
+    scenario = series.scenario
     formation = resolve(scenario)
     coordinates = {
         "time": ("time", series["time"], {"units": "s", "long_name": "time"}),
@@ -64,9 +73,33 @@ def labelled_result(scenario: Scenario, series: Series) -> "xr.Dataset":
     attributes = {
         "title": scenario.name,
         "scenario": to_yaml(scenario),
-        "sensing_range_m": scenario.avoidance.range,
+        "sensing_range_m": float(formation.field("avoidance", "range").max()),
         "hand_off_time_s": formation.hand_off,
+        "engine": series.choice.engine,
         "drake_formation_version": version("drake-formation"),
         "drake_version": version("drake"),
     }
+    if series.choice.reason:
+        attributes["engine_reason"] = series.choice.reason
     return xr.Dataset(variables, coordinates, attributes)
+
+
+def series_of(result: "xr.Dataset") -> Series:
+    """The variables of a labelled result, as they were before they were labelled.
+
+    Args:
+        result: from :func:`labelled_result`, or read from ``result.nc``.
+
+    Raises:
+        ValueError: it is no such result, or one of an earlier version, which recorded less.
+        ScenarioError: its scenario is not one of this version.
+    """
+    missing = [
+        *(name for name in VARIABLES if name not in result),
+        *(name for name in ("scenario", "engine") if name not in result.attrs),
+    ]
+    if missing:
+        raise ValueError(f"not a result of this version: it has no {', '.join(missing)}")
+    scenario = validate(parse(result.attrs["scenario"], "the result's scenario"))
+    arrays = {str(name): variable.values for name, variable in result.variables.items()}
+    return Series(arrays, scenario, Choice(result.attrs["engine"], result.attrs.get("engine_reason", "")))

@@ -1,29 +1,33 @@
 """Run a scenario: aggregation, hand-off, transport, and the obstacle-free response."""
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
-from pydrake.systems.framework import Context
+from pydrake.systems.framework import Context, Diagram
 
 from drake_formation.diagram import build_diagram
 from drake_formation.formation.formation import Formation
-from drake_formation.parameters import block_parameters, structure, write_parameters, write_start
+from drake_formation.lowering.errors import LoweringError
+from drake_formation.parameters import (
+    block_parameters,
+    find_block,
+    robot_name,
+    structure,
+    write_parameters,
+    write_start,
+)
 from drake_formation.scenario import Scenario, resolve
-from drake_formation.simulation.engines import ENGINES, Engine
+from drake_formation.simulation.choice import Choice, choose
+from drake_formation.simulation.clearance import contact
+from drake_formation.simulation.engines import ENGINES, Engine, Start
 from drake_formation.simulation.obstacles import Leap, first_hit, worst_leap
+from drake_formation.simulation.phases import Progress, felt_obstacles, without_obstacles
 from drake_formation.simulation.recorder import NonFiniteStateError, Recording
 from drake_formation.simulation.result import labelled_result
 from drake_formation.simulation.series import Series, time_series
 
 if TYPE_CHECKING:
     import xarray as xr
-
-MOST_STEPS = 200_000
-"""A run that would need more of them, as its obstacles are so small, is refused."""
-
-Progress = Callable[[float], None]
-"""Called with how much simulated time is done, from 0 to :func:`simulated_duration` (s)."""
 
 
 class SimulationError(RuntimeError):
@@ -42,29 +46,37 @@ class SimulationError(RuntimeError):
         self.partial = partial
 
 
-def simulate(scenario: Scenario, *, engine: str = "blocks", progress: Progress | None = None) -> "xr.Dataset":
+AUTO = "auto"
+
+MOST_STEPS = 200_000
+"""A run that would need more of them, as its obstacles are so small, is refused."""
+
+
+def simulate(scenario: Scenario, *, engine: str = AUTO, progress: Progress | None = None) -> "xr.Dataset":
     """Run a scenario from its initial state to its end.
 
     Where there are obstacles, the transport is run once more from the hand-off without them: the deviation from that
-    response is the paper's tracking error. Where a robot crossed much of an obstacle's range in one step, the whole is
-    repeated with shorter steps.
+    response is the paper's tracking error.
 
     Args:
         scenario: what to run.
-        engine: ``blocks``, the diagram on Drake's Simulator; or ``compiled``, code derived from the same diagram, for
-            ``runge_kutta5`` only.
+        engine: ``blocks``, the diagram on Drake's Simulator, which is the reference; ``compiled``, code derived from
+            the same diagram, or ``exponential``, which integrates the linear part of that code exactly, both in place
+            of ``runge_kutta5`` only; or ``auto``, the blocks where they are done before they could be compiled or
+            cannot be compiled, else the compiled ones (:mod:`drake_formation.simulation.choice`).
         progress: called as the simulated time goes on.
 
     Returns:
-        The labelled result; see :func:`drake_formation.simulation.result.labelled_result`.
+        The labelled result; see :func:`drake_formation.simulation.result.labelled_result`. Its attribute ``engine``
+        names what ran it, and ``engine_reason`` why, where that was chosen.
 
     Raises:
         ValueError: there is no such engine.
-        ScenarioError: the scenario is wrong, or asks for an integrator that the compiled engine does not have.
-        LoweringError: a block of the diagram cannot be compiled.
+        ScenarioError: the scenario is wrong, or asks for what the engine named does not have.
+        LoweringError: a block of the diagram cannot be compiled by the engine named.
         SimulationError: the run diverged or the integrator gave up; it carries what was recorded.
     """
-    return labelled_result(scenario, PreparedRun(scenario, engine=engine).run(scenario, progress=progress))
+    return labelled_result(PreparedRun(scenario, engine=engine).run(scenario, progress=progress))
 
 
 class PreparedRun:
@@ -74,18 +86,23 @@ class PreparedRun:
 
     Args:
         scenario: gives the structure; see :func:`drake_formation.parameters.structure`.
-        engine: as for :func:`simulate`.
+        engine: as for :func:`simulate`; ``auto`` goes by this scenario.
+
+    Attributes:
+        diagram: the diagram.
+        structure: of the scenarios it runs.
+        choice: what runs them, and why where that was chosen.
 
     Raises:
         ValueError, ScenarioError, LoweringError: as for :func:`simulate`.
     """
 
-    def __init__(self, scenario: Scenario, *, engine: str = "blocks") -> None:
-        if engine not in ENGINES:
-            raise ValueError(f"no engine {engine!r}; there are {', '.join(ENGINES)}")
+    def __init__(self, scenario: Scenario, *, engine: str = AUTO) -> None:
+        if engine not in (AUTO, *ENGINES):
+            raise ValueError(f"no engine {engine!r}; there are {', '.join((AUTO, *ENGINES))}")
         self.diagram = build_diagram(scenario)
         self.structure = structure(resolve(scenario))
-        self._start = ENGINES[engine](self.diagram)
+        self.choice, self._start = _chosen(scenario, self.diagram) if engine == AUTO else _asked(engine, self.diagram)
         self._context = self.diagram.CreateDefaultContext()
 
     def run(self, scenario: Scenario, *, progress: Progress | None = None) -> Series:
@@ -109,6 +126,8 @@ class PreparedRun:
     def run_known(self, scenario: Scenario, *, progress: Progress | None = None) -> Series:
         """Run a scenario that is known to have the structure.
 
+        Where its steps might leap over what an obstacle exerts, it is run again with shorter ones.
+
         Args:
             scenario: what to run.
             progress: called as the simulated time goes on.
@@ -127,110 +146,128 @@ class PreparedRun:
             run.advance(hand_off)
             # Carry out the hand-off now, so that the first sample of the transport has its forces.
             run.carry_out_updates()
-            at_hand_off = run.context.Clone() if felt_obstacles(scenario) else None
+            at_hand_off = run.context.Clone() if felt_obstacles(formation) else None
             run.advance(end)
         except _FAILURES as failure:
-            if felt_obstacles(scenario) and len(run.recording.times):
-                _require_clear(scenario, run)
+            if felt_obstacles(formation) and len(run.recording.times):
+                self._require_clear(scenario, run)
                 if leap := worst_leap(scenario, run.recording):
-                    return self.run_known(_with_shorter_steps(scenario, run, leap), progress=progress)
-            raise _simulation_error(scenario, run, run.recording, None, failure) from failure
+                    return self.run_known(self._with_shorter_steps(scenario, run, leap), progress=progress)
+            raise self._simulation_error(run, self._series(scenario, run.recording, None), failure) from failure
         if at_hand_off is None:
-            return time_series(scenario, run.recording, run.recording)
-        _require_clear(scenario, run)
+            return self._series(scenario, run.recording, run.recording)
+        self._require_clear(scenario, run)
         if leap := worst_leap(scenario, run.recording):
-            return self.run_known(_with_shorter_steps(scenario, run, leap), progress=progress)
+            return self.run_known(self._with_shorter_steps(scenario, run, leap), progress=progress)
 
-        write_parameters(self.diagram, at_hand_off, block_parameters(resolve(without_obstacles(scenario))))
+        write_parameters(self.diagram, at_hand_off, block_parameters(without_obstacles(formation)))
         nominal = self._start(
             scenario, at_hand_off, progress and (lambda time: progress(end - begin + time - hand_off))
         )
         try:
             nominal.advance(end)
         except _FAILURES as failure:
-            raise _simulation_error(scenario, nominal, run.recording, nominal.recording, failure) from failure
-        return time_series(scenario, run.recording, nominal.recording)
+            raise self._simulation_error(
+                nominal, self._series(scenario, run.recording, nominal.recording), failure
+            ) from failure
+        series = self._series(scenario, run.recording, nominal.recording)
+        _require_no_contact(series)
+        return series
+
+    def _series(self, scenario: Scenario, run: Recording, nominal: Recording | None) -> Series:
+        return time_series(scenario, self.choice, run, nominal)
 
     def _initial_context(self, formation: Formation) -> Context:
         context = self._context  # one for all runs, as making one takes as long as some runs
-        context.SetTime(0.0)
+        context.SetTime(formation.begin)
         self.diagram.SetDefaultContext(context)
         write_parameters(self.diagram, context, block_parameters(formation))
         write_start(self.diagram, context, formation)
         return context
 
+    def _require_clear(self, scenario: Scenario, run: Engine) -> None:
+        """Refuse a run with a robot inside an obstacle, where the force is beyond all bounds."""
+        if hit := first_hit(scenario, run.recording):
+            raise _inside(hit.time, hit.robot, hit.obstacle, self._series(scenario, run.recording, None))
 
-def simulated_duration(scenario: Scenario) -> float:
-    """How much time :func:`simulate` simulates in all (s)."""
-    repeats = 2 if felt_obstacles(scenario) else 1
-    return scenario.aggregation.duration + repeats * scenario.transport.duration
+    def _with_shorter_steps(self, scenario: Scenario, run: Engine, leap: Leap) -> Scenario:
+        """The scenario with steps that overlook no obstacle.
+
+        Raises:
+            SimulationError: the user wants all steps to have one length, or there would be too many.
+        """
+        settings = scenario.simulator
+        if run.fixed_step or (resolve(scenario).end - settings.start_time) / leap.longest > MOST_STEPS:
+            raise SimulationError(
+                f"robot {leap.robot} passes obstacle {leap.obstacle} at t = {leap.time:.6g} s so fast that steps of "
+                f"{settings.max_step_size:g} s may overlook it. Try simulator.max_step_size={leap.longest:.2g}, or a "
+                "larger avoidance.range.",
+                leap.time,
+                leap.robot,
+                labelled_result(self._series(scenario, run.recording, None)),
+            )
+        return scenario.model_copy(update={"simulator": settings.model_copy(update={"max_step_size": leap.longest})})
+
+    def _simulation_error(self, failed: Engine, series: Series, failure: BaseException) -> SimulationError:
+        """Say when, which robot, why and what to try."""
+        time = failed.recording.times[-1] if len(failed.recording.times) else failed.context.get_time()
+        robot = self._culprit(failed)
+        reasons: dict[type[BaseException], str] = {
+            NonFiniteStateError: "its state is no longer finite",
+            ZeroDivisionError: "it met another robot",
+            OverflowError: "its forces grew beyond all bounds",
+        }
+        reason = reasons.get(type(failure), f"the integrator gave up ({failure})")
+        advice = _advice(series.scenario, failed)
+        message = f"the run stopped at t = {time:.6g} s at robot {robot}: {reason}. Try {advice}."
+        return SimulationError(message, float(time), robot, labelled_result(series))
+
+    def _culprit(self, run: Engine) -> int:
+        """Of the robots whose state is not finite, or else of all, the one that was fastest at last; from 1."""
+        last = run.recording.series("state")[-1] if len(run.recording.times) else None
+        finite, speeds = [], []
+        for i in range(self.diagram.num_output_ports()):
+            path = f"{robot_name(i)}/plant"
+            if not self.diagram.HasSubsystemNamed(robot_name(i)):
+                break
+            own = find_block(self.diagram, path).GetMyContextFromRoot(run.context)
+            finite.append(bool(np.isfinite(own.get_continuous_state_vector().CopyToVector()).all()))
+            speeds.append(0.0 if last is None else float(np.abs(last[i, 2:]).max()))
+        lost = ~np.array(finite)
+        return int(np.argmax(np.where(lost | ~lost.any(), speeds, -1.0))) + 1
 
 
-def felt_obstacles(scenario: Scenario) -> bool:
-    """Whether any obstacle exerts a force."""
-    return bool(scenario.avoidance.obstacles) and scenario.avoidance.gain > 0
+def _chosen(scenario: Scenario, diagram: Diagram) -> tuple[Choice, Start]:
+    """The fastest engine for a scenario, made ready; the blocks where another does not get ready."""
+    choice = choose(scenario)
+    try:
+        return choice, ENGINES[choice.engine](diagram)
+    except LoweringError as error:
+        return _asked("blocks", diagram, str(error))
 
 
-def without_obstacles(scenario: Scenario) -> Scenario:
-    """The scenario in which no obstacle exerts a force; its structure is the same."""
-    return scenario.model_copy(update={"avoidance": scenario.avoidance.model_copy(update={"gain": 0.0})})
+def _asked(engine: str, diagram: Diagram, reason: str = "") -> tuple[Choice, Start]:
+    return Choice(engine, reason), ENGINES[engine](diagram)
 
 
-def _require_clear(scenario: Scenario, run: Engine) -> None:
-    """Refuse a run with a robot inside an obstacle, where the force is beyond all bounds."""
-    if hit := first_hit(scenario, run.recording):
-        raise _stopped(
-            scenario,
-            run,
-            hit.time,
-            hit.robot,
-            f"robot {hit.robot} is inside obstacle {hit.obstacle} at t = {hit.time:.6g} s. Try other starting "
-            "positions, another place for the obstacle, or a larger avoidance.gain.",
-        )
+def _require_no_contact(series: Series) -> None:
+    """Refuse a run in which a robot is inside an obstacle between two samples."""
+    found = contact(series)
+    if found is not None:
+        time, robot, obstacle = found
+        raise _inside(time, robot + 1, obstacle + 1, series)
 
 
-def _with_shorter_steps(scenario: Scenario, run: Engine, leap: Leap) -> Scenario:
-    """The scenario with steps that overlook no obstacle.
-
-    Raises:
-        SimulationError: the user wants all steps to have one length, or there would be too many.
-    """
-    settings = scenario.simulator
-    if run.fixed_step or (resolve(scenario).end - settings.start_time) / leap.longest > MOST_STEPS:
-        raise _stopped(
-            scenario,
-            run,
-            leap.time,
-            leap.robot,
-            f"robot {leap.robot} passes obstacle {leap.obstacle} at t = {leap.time:.6g} s so fast that steps of "
-            f"{settings.max_step_size:g} s may overlook it. Try simulator.max_step_size={leap.longest:.2g}, or a "
-            "larger avoidance.range.",
-        )
-    return scenario.model_copy(update={"simulator": settings.model_copy(update={"max_step_size": leap.longest})})
-
-
-def _stopped(scenario: Scenario, run: Engine, time: float, robot: int, message: str) -> SimulationError:
-    return SimulationError(message, time, robot, labelled_result(scenario, time_series(scenario, run.recording, None)))
+def _inside(time: float, robot: int, obstacle: int, series: Series) -> SimulationError:
+    message = (
+        f"robot {robot} is inside obstacle {obstacle} at t = {time:.6g} s. Try other starting positions, "
+        "another place for the obstacle, or a larger avoidance.gain."
+    )
+    return SimulationError(message, time, robot, labelled_result(series))
 
 
 # Drake's own complaints, and Python's from the laws: coincident robots divide by zero.
 _FAILURES = (RuntimeError, ArithmeticError, SystemExit)
-
-
-def _simulation_error(
-    scenario: Scenario, failed: Engine, run: Recording, nominal: Recording | None, failure: BaseException
-) -> SimulationError:
-    """Say when, which robot, why and what to try."""
-    time = failed.recording.times[-1] if len(failed.recording.times) else failed.context.get_time()
-    robot = _culprit(failed)
-    reasons: dict[type[BaseException], str] = {
-        NonFiniteStateError: "its state is no longer finite",
-        ZeroDivisionError: "it met another robot",
-        OverflowError: "its forces grew beyond all bounds",
-    }
-    reason = reasons.get(type(failure), f"the integrator gave up ({failure})")
-    message = f"the run stopped at t = {time:.6g} s at robot {robot}: {reason}. Try {_advice(scenario, failed)}."
-    return SimulationError(message, float(time), robot, labelled_result(scenario, time_series(scenario, run, nominal)))
 
 
 def _advice(scenario: Scenario, run: Engine) -> str:
@@ -244,12 +281,3 @@ def _advice(scenario: Scenario, run: Engine) -> str:
         f"a smaller simulator.accuracy (now {settings.accuracy:g}) or simulator.max_step_size (now "
         f"{settings.max_step_size:g} s), and look at the gains and the starting positions"
     )
-
-
-def _culprit(run: Engine) -> int:
-    """Of the robots whose state is not finite, or else of all, the one that was fastest at last; from 1."""
-    state = run.context.get_continuous_state_vector().CopyToVector().reshape(-1, 4)
-    lost = ~np.isfinite(state).all(axis=1)
-    last = run.recording.series("state")[-1] if len(run.recording.times) else np.zeros_like(state)
-    speed = np.abs(last[:, 2:]).max(axis=1)
-    return int(np.argmax(np.where(lost | ~lost.any(), speed, -1.0))) + 1

@@ -6,21 +6,37 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.scenario import Scenario, resolve
+from drake_formation.simulation.choice import Choice
+from drake_formation.simulation.motion import Motion
 from drake_formation.simulation.recorder import Recording
 from drake_formation.systems.consensus_error import consensus_errors
 
 Array = NDArray[np.float64]
-Series = Mapping[str, Array]
-"""Arrays by the names, and with the units and dimensions, of the labelled result's variables."""
 
 FORCES = ("tracking_force", "consensus_force", "avoidance_force")
 
 
-def time_series(scenario: Scenario, run: Recording, nominal: Recording | None) -> Series:
+class Series(dict[str, Array]):
+    """Arrays by the names, and with the units and dimensions, of the labelled result's variables.
+
+    Args:
+        arrays: the variables.
+        scenario: what ran.
+        choice: what carried it out.
+    """
+
+    def __init__(self, arrays: Mapping[str, Array], scenario: Scenario, choice: Choice) -> None:
+        super().__init__(arrays)
+        self.scenario = scenario
+        self.choice = choice
+
+
+def time_series(scenario: Scenario, choice: Choice, run: Recording, nominal: Recording | None) -> Series:
     """Everything that follows from what was recorded.
 
     Args:
         scenario: the scenario that ran.
+        choice: what carried it out.
         run: what was recorded, at least one sample.
         nominal: the obstacle-free response from the same hand-off state; the run itself where no obstacle is felt;
             None where the run never got there.
@@ -28,25 +44,30 @@ def time_series(scenario: Scenario, run: Recording, nominal: Recording | None) -
     Returns:
         The variables of :func:`drake_formation.simulation.result.labelled_result`, and ``time`` (s).
     """
-    state = run.series("state")
-    position = state[..., :2]
     formation = resolve(scenario)
     slots, obstacles = formation.slots, formation.obstacles
     first, second = formation.springs.pairs.T
     forces = {name: run.series(name) for name in FORCES}
-    with np.errstate(over="ignore"):  # a run that diverged may end in numbers whose squares overflow
+    with np.errstate(over="ignore", invalid="ignore"):  # a run that diverged may end in numbers whose squares overflow
+        motion = recorded_motion(scenario, run)
+        position = motion.position
         lengths = np.linalg.norm(position[:, first] - position[:, second], axis=-1)
         clearance = np.linalg.norm(position[:, :, None] - obstacles[:, :2], axis=-1) - obstacles[:, 2]
-    return {
+        deviation = _deviation(scenario, motion, run, nominal)
+    arrays = {
         "time": run.times,
         "phase": run.phases,
         "position": position,
-        "velocity": state[..., 2:],
+        "velocity": motion.velocity,
+        "acceleration": motion.acceleration,
         "tracking_error": run.series("tracking_error")[..., :2],
-        "deviation": _deviation(run, state, nominal, formation.hand_off),
+        "deviation": deviation.position,
+        "deviation_velocity": deviation.velocity,
+        "deviation_acceleration": deviation.acceleration,
         "consensus_error": consensus_errors(position, slots),
         **forces,
         "control_force": np.sum(list(forces.values()), axis=0),
+        "spring_force": run.series("spring_force"),
         "spring_length": lengths,
         "rest_length": formation.rest_lengths,
         "clearance": clearance,
@@ -56,21 +77,30 @@ def time_series(scenario: Scenario, run: Recording, nominal: Recording | None) -
         "obstacle_position": obstacles[:, :2],
         "obstacle_radius": obstacles[:, 2],
     }
+    return Series(arrays, scenario, choice)
 
 
-def _deviation(run: Recording, state: Array, nominal: Recording | None, hand_off: float) -> Array:
-    """Position relative to the obstacle-free response at the run's own times (m), NaN where there is none."""
-    deviation = np.full_like(state[..., :2], np.nan)
-    if nominal is None or len(nominal.times) < 2:
+def recorded_motion(scenario: Scenario, run: Recording) -> Motion:
+    """The motion of the robots; their acceleration follows from the forces on them."""
+    state = run.series("state")
+    position, velocity = state[..., :2], state[..., 2:]
+    forces = np.sum([run.series(name) for name in (*FORCES, "spring_force")], axis=0)
+    return Motion(run.times, position, velocity, forces / resolve(scenario).masses[:, None])
+
+
+def _deviation(scenario: Scenario, motion: Motion, run: Recording, nominal: Recording | None) -> Motion:
+    """The motion relative to the obstacle-free response, NaN where there is none."""
+    nowhere = np.full_like(motion.position, np.nan)
+    deviation = Motion(motion.times, nowhere, nowhere.copy(), nowhere.copy())
+    if nominal is None or not len(nominal.times):
         return deviation
-    times = nominal.times
-    known = (run.times >= hand_off) & (run.times <= times[-1])
-    if nominal is run:
-        deviation[known & (run.times >= times[0])] = 0.0
-        return deviation
-    from scipy.interpolate import CubicHermiteSpline  # slow to import, and not needed to build a diagram
-
-    free = nominal.series("state")
-    response = CubicHermiteSpline(times, free[..., :2], free[..., 2:])
-    deviation[known] = state[known][..., :2] - response(run.times[known])
+    known = (motion.times >= resolve(scenario).hand_off) & (motion.times <= nominal.times[-1])
+    free = (
+        (motion.position[known], motion.velocity[known], motion.acceleration[known])
+        if nominal is run
+        else recorded_motion(scenario, nominal).at_times(motion.times[known])
+    )
+    deviation.position[known] = motion.position[known] - free[0]
+    deviation.velocity[known] = motion.velocity[known] - free[1]
+    deviation.acceleration[known] = motion.acceleration[known] - free[2]
     return deviation

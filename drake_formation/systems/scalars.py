@@ -29,7 +29,9 @@ def positive_part(x: Scalar) -> Scalar:
 
 
 def at_most(x: Scalar, bound: Scalar) -> Scalar:
-    """1 where x ≤ bound and 0 elsewhere, of any scalar."""
+    """1 where x ≤ bound and 0 elsewhere, of any scalar or an array of floats."""
+    if isinstance(x, np.ndarray):
+        return np.where(x <= bound, 1.0, 0.0)
     if isinstance(x, Expression) or isinstance(bound, Expression):
         return symbolic.if_then_else(x <= bound, Expression(1.0), Expression(0.0))
     return 1.0 if x <= bound else 0.0

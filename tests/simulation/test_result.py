@@ -9,13 +9,17 @@ from drake_formation.scenario import resolve, with_overrides
 UNITS = {
     "position": "m",
     "velocity": "m/s",
+    "acceleration": "m/s²",
     "tracking_error": "m",
     "deviation": "m",
+    "deviation_velocity": "m/s",
+    "deviation_acceleration": "m/s²",
     "consensus_error": "m",
     "tracking_force": "N",
     "consensus_force": "N",
     "avoidance_force": "N",
     "control_force": "N",
+    "spring_force": "N",
     "spring_length": "m",
     "rest_length": "m",
     "clearance": "m",
@@ -47,7 +51,7 @@ def scenario():
 
 @pytest.fixture(scope="module")
 def result(scenario):
-    return simulate(scenario)
+    return simulate(scenario, engine="blocks")
 
 
 def test_every_variable_has_a_unit_and_a_name(result):
@@ -102,6 +106,25 @@ def test_velocity_is_the_slope_of_position(result):
     position, velocity, time = (result[name].values for name in ("position", "velocity", "time"))
     mean = (velocity[1:] + velocity[:-1]) / 2
     np.testing.assert_allclose(np.diff(position, axis=0), mean * np.diff(time)[:, None, None], atol=1e-3)
+
+
+def test_acceleration_is_the_slope_of_velocity(result):
+    velocity, acceleration, time, phase = (
+        result[name].values for name in ("velocity", "acceleration", "time", "phase")
+    )
+    within = phase[1:] == phase[:-1]  # at the hand-off it jumps
+    mean = (acceleration[1:] + acceleration[:-1]) / 2 * np.diff(time)[:, None, None]
+    np.testing.assert_allclose(np.diff(velocity, axis=0)[within], mean[within], atol=5e-3)
+
+
+def test_the_rates_of_the_deviation_are_its_slopes(result):
+    carried = result.isel(time=result["phase"].values == 1)
+    deviation, rate, second, time = (
+        carried[name].values for name in ("deviation", "deviation_velocity", "deviation_acceleration", "time")
+    )
+    step = np.diff(time)[:, None, None]
+    np.testing.assert_allclose(np.diff(deviation, axis=0), (rate[1:] + rate[:-1]) / 2 * step, atol=1e-3)
+    np.testing.assert_allclose(np.diff(rate, axis=0), (second[1:] + second[:-1]) / 2 * step, atol=1e-2)
 
 
 def test_lengths_and_clearances_are_distances(result):

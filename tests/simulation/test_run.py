@@ -21,13 +21,10 @@ def line(**overrides):
 
 @settings(max_examples=8)
 @given(scenarios())
-def test_any_sound_scenario_runs_from_beginning_to_end_or_says_why_not(scenario):
+def test_any_sound_scenario_runs_from_beginning_to_end(scenario):
     scenario = with_overrides(scenario, {"simulator.accuracy": 1e-4, "transport.duration": 0.5})
-    try:
-        result, end = simulate(scenario), 0.5
-    except SimulationError as error:
-        result, end = error.partial, error.time
-    assert result["time"].values[-1] == end
+    result = simulate(scenario, engine="blocks")
+    assert result["time"].values[[0, -1]].tolist() == [0, 0.5]
     assert (np.diff(result["time"]) > 0).all()
     assert np.isfinite(result["position"]).all()
 

@@ -1,0 +1,161 @@
+"""The longest and the shortest that vectors become between samples too.
+
+Most steps are discarded at once: what they may reach, by their ends and how far they bulge from their chord, falls
+short of what is reached elsewhere. The rest are cut finer and finer where they come nearest to the extreme.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drake_formation.simulation.motion import Motion
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
+Law = Callable[[Array, Array, Array], Array]
+Score = Callable[[Array, Array], Array]
+
+CUTS = 32
+"""Parts into which a stretch is cut."""
+ROUNDS = 6
+"""How often at most; by then part that is kept of a step is a millionth of it."""
+NEGLIGIBLE = 1e-9
+"""A step that may reach no further than this beyond what is known is discarded (m, N)."""
+
+
+@dataclass(frozen=True)
+class Vectors:
+    """Vectors in the plane that follow from a motion.
+
+    Attributes:
+        motion: of some points.
+        law: from times (s), of any shape, positions (m) and velocities (m/s), of that shape and (points, 2), to
+            vectors of that shape and (vectors, 2).
+        samples: the vectors at the motion's samples, shape (samples, vectors, 2).
+        bulge: how far each leaves the chord of each step at the most, shape (samples − 1, vectors).
+    """
+
+    motion: Motion
+    law: Law
+    samples: Array
+    bulge: Array
+
+    @classmethod
+    def of_positions(cls, motion: Motion, bulge: Array, law: Callable[[Array], Array] = lambda x: x) -> "Vectors":
+        """Vectors that follow from positions alone.
+
+        Args:
+            motion: of some points.
+            bulge: how far each vector leaves the chord of each step at the most, shape (samples − 1, vectors).
+            law: from positions (m), shape (..., points, 2), to vectors, shape (..., vectors, 2).
+        """
+        return cls(motion, lambda _times, position, _velocity: law(position), law(motion.position), bulge)
+
+    def within(self, step: Indices, share: Array) -> Array:
+        """Their values within some steps.
+
+        Args:
+            step: index of the sample before, shape (m,).
+            share: how much of the step has passed, from 0 to 1; shape (m, k).
+
+        Returns:
+            Shape (m, k, vectors, 2).
+        """
+        times = self.motion.times[step, None] + share * np.diff(self.motion.times)[step, None]
+        position, velocity, _ = self.motion.at(step, share)
+        values: Array = self.law(times, position, velocity)
+        return values
+
+
+def longest(vectors: Vectors, *, each: bool = False) -> Array:
+    """The greatest length of any vector at any time, shape (1,); or of each, shape (vectors,)."""
+    nothing = np.zeros(vectors.samples.shape[1])
+    return _extreme(vectors, 1.0, nothing, lambda begin, end: np.maximum(_length(begin), _length(end)), each)
+
+
+def shortest(vectors: Vectors, radii: Array | float = 0.0, *, each: bool = False) -> Array:
+    """The same of the least length, after something is taken from it, shape (vectors,)."""
+    less = np.broadcast_to(radii, vectors.samples.shape[1:2])
+    return -_extreme(vectors, -1.0, less, lambda begin, end: -_chord_distance(begin, end), each)
+
+
+def last_beyond(vectors: Vectors, bound: float) -> tuple[int, float] | None:
+    """When any vector is longer than a bound for the last time.
+
+    Returns:
+        The step (index of the sample before it) and how much of it has passed; the last sample and 0 where one still
+        is at the end; None where none ever is.
+    """
+    beyond = _length(vectors.samples) > bound
+    if beyond[-1].any():
+        return len(beyond) - 1, 0.0
+    steps = beyond.any(axis=1)
+    first = int(np.flatnonzero(steps)[-1]) if steps.any() else 0
+    # From there on all samples are within the bound, but some steps may still reach beyond it.
+    reach = (
+        np.maximum(_length(vectors.samples[first:-1]), _length(vectors.samples[first + 1 :])) + vectors.bulge[first:]
+    )
+    for step in np.flatnonzero((reach > bound).any(axis=1))[::-1] + first:
+        share = _last_share_beyond(vectors, step, bound)
+        if share is not None:
+            return int(step), share
+    return None
+
+
+def _last_share_beyond(vectors: Vectors, step: np.intp, bound: float) -> float | None:
+    """How much of a step has passed when any vector is longer than a bound for the last time, or None."""
+    last, low, high = None, 0.0, 1.0
+    for _ in range(ROUNDS):
+        share = np.linspace(low, high, CUTS + 1)
+        beyond = np.flatnonzero((_length(vectors.within(np.array([step]), share[None])[0]) > bound).any(axis=-1))
+        if not len(beyond):
+            break
+        last = low = float(share[beyond[-1]])
+        high = float(share[min(beyond[-1] + 1, CUTS)])
+    return last
+
+
+def _extreme(vectors: Vectors, sign: float, more: Array, on_chord: Score, each: bool) -> Array:
+    """The highest score of any vector or of each.
+
+    Args:
+        vectors: what to look at.
+        sign: the score of a vector is its length with this sign,
+        more: and this added, shape (vectors,).
+        on_chord: the highest score, without what is added, on a straight line from a vector to another.
+        each: of each.
+    """
+    best: Array = (sign * _length(vectors.samples) + more).max(axis=0 if each else None, keepdims=not each).reshape(-1)
+    reach = on_chord(vectors.samples[:-1], vectors.samples[1:]) + more + vectors.bulge
+    step, vector = np.nonzero(reach > best + NEGLIGIBLE * (1 + abs(best)))
+    low, high, bulge = np.zeros(len(step)), np.ones(len(step)), vectors.bulge[step, vector]
+    for _ in range(ROUNDS):
+        if not len(step):
+            break
+        share = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, CUTS + 1)
+        row, place = np.arange(len(step)), vector * each
+        values = vectors.within(step, share)[row, :, vector]
+        parts = on_chord(values[:, :-1], values[:, 1:]) + more[vector, None]
+        bulge = bulge / CUTS**2
+        chosen, highest = parts.argmax(axis=1), parts.max(axis=1)
+        known = np.maximum((sign * _length(values)).max(axis=1) + more[vector], highest - bulge)
+        np.maximum.at(best, place, known)
+        low, high = share[row, np.maximum(chosen - 1, 0)], share[row, np.minimum(chosen + 2, CUTS)]
+        kept = highest + bulge > (best + NEGLIGIBLE * (1 + abs(best)))[place]
+        step, vector, low, high, bulge = step[kept], vector[kept], low[kept], high[kept], bulge[kept] * 3**2
+    return best
+
+
+def _length(vectors: Array) -> Array:
+    lengths: Array = np.sqrt(vectors[..., 0] ** 2 + vectors[..., 1] ** 2)
+    return lengths
+
+
+def _chord_distance(begin: Array, end: Array) -> Array:
+    """Least length on the straight line from a vector to another."""
+    way = end - begin
+    squared = np.maximum((way**2).sum(axis=-1), np.finfo(float).tiny)
+    share = np.clip(-(begin * way).sum(axis=-1) / squared, 0.0, 1.0)
+    return _length(begin + share[..., None] * way)

@@ -1,0 +1,135 @@
+"""The control forces on all robots along a motion, by the laws of the blocks, many times at once."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drake_formation.formation.formation import Formation
+from drake_formation.parameters import block_parameters, robot_name
+from drake_formation.parts.avoidance.khatib import Khatib, avoidance_force
+from drake_formation.parts.channels.ideal import IdealChannel
+from drake_formation.parts.coordination.consensus import Consensus, consensus_force
+from drake_formation.parts.part import Part
+from drake_formation.parts.references.set_point import SetPointReference
+from drake_formation.parts.references.trajectory import Motion as MovingReference
+from drake_formation.parts.references.trajectory import polynomial_motion
+from drake_formation.parts.tracking.lqr import Lqr, feed_forward_force, tracking_force
+from drake_formation.systems.sensing import nearest
+
+Array = NDArray[np.float64]
+Law = Callable[[Array, Array, Array], Array]
+"""Control forces (N), shape (..., N, 2), of times (s), shape (...), positions (m) and velocities (m/s), (..., N, 2)."""
+
+KNOWN: dict[str, tuple[type[Part], ...]] = {
+    "tracking": (Lqr,),
+    "coordination": (Consensus,),
+    "avoidance": (Khatib,),
+    "reference": (SetPointReference, MovingReference),
+    "channel": (IdealChannel,),
+}
+"""The parts whose laws are here; all are functions of time and the robots' states alone."""
+
+
+def control_law(formation: Formation, times: Array, recorded: Array) -> Law:
+    """The control u of every robot during transport (paper, Eq. 8), as a function of time and state.
+
+    Where a robot has parts of other kinds, which may have states of their own, it is read off what was recorded.
+
+    Args:
+        formation: what ran.
+        times: when it was recorded (s), shape (m,).
+        recorded: the control forces then (N), shape (m, N, 2).
+    """
+    if all(isinstance(part, kinds) for role, kinds in KNOWN.items() for part in formation.parts[role]):
+        return ControlLaw(formation)
+
+    def between(at: Array, position: Array, _velocity: Array) -> Array:
+        columns = recorded.reshape(len(times), -1).T
+        read = [np.interp(at, times, column) for column in columns]
+        return np.stack(read, axis=-1).reshape(position.shape)
+
+    return between
+
+
+class ControlLaw:
+    """The control by parts that are all ``KNOWN``.
+
+    Args:
+        formation: the robots' formation.
+    """
+
+    def __init__(self, formation: Formation) -> None:
+        numbers, robots = block_parameters(formation), range(formation.robots)
+        own = {block: [numbers[f"{robot_name(i)}/{block}"] for i in robots] for block in BLOCKS}
+        self._gains = [
+            np.array(column) for column in zip(*(np.ravel(gain) for gain, *_ in own["tracking"]), strict=True)
+        ]
+        self._inertia = np.array([inertia[0] for _, inertia, _ in own["tracking"]])
+        self._slots = formation.slots
+        listeners, speakers = formation.channels.pairs.T
+        gains = np.array([group[0] for group in own["consensus"]])
+        self._delta, self._delta_v = gains[listeners].T
+        self._weights, self._listeners, self._speakers = formation.channels.weights, listeners, speakers
+        self._gathered = np.eye(formation.robots)[listeners]
+        self._range, self._gain = np.array([group[0] for group in own["avoidance"]]).T
+        self._obstacles = formation.obstacles
+        self._masked = np.array([part.config.sensing == "nearest" for part in formation.parts["avoidance"]])
+        self._reference = numbers["reference"]
+        self._set_point = isinstance(formation.parts["reference"][0], SetPointReference)
+
+    def __call__(self, times: Array, position: Array, velocity: Array) -> Array:
+        """Control forces (N); see :data:`Law`."""
+        return self._tracking(times, position, velocity) + self._consensus(position, velocity) + self._avoid(position)
+
+    def _tracking(self, times: Array, position: Array, velocity: Array) -> Array:
+        place, speed, acceleration = self._reference_at(times)
+        error = position - place[..., None, :] - self._slots
+        drift = velocity - speed[..., None, :]
+        back = tracking_force((error[..., 0], error[..., 1], drift[..., 0], drift[..., 1]), self._gains)
+        ahead = feed_forward_force(self._inertia, acceleration[..., :1], acceleration[..., 1:])
+        force: Array = np.stack(back, axis=-1) + np.stack(ahead, axis=-1)
+        return force
+
+    def _reference_at(self, times: Array) -> tuple[Array, Array, Array]:
+        """Position, velocity and acceleration of the formation centre's reference, each of shape (..., 2)."""
+        if self._set_point:
+            _, goal = self._reference
+            rest = np.zeros((*np.shape(times), 2))
+            return rest + goal, rest, rest
+        starts, coefficients = self._reference
+        piece = np.maximum(np.searchsorted(starts, times, "right") - 1, 0)
+        rising = list(np.moveaxis(coefficients[piece], -1, 0))
+        return polynomial_motion((times - starts[piece])[..., None], rising)
+
+    def _consensus(self, position: Array, velocity: Array) -> Array:
+        i, j = self._listeners, self._speakers
+        apart, drift = position[..., i, :] - position[..., j, :], velocity[..., i, :] - velocity[..., j, :]
+        wanted = self._slots[i] - self._slots[j]
+        force = consensus_force(
+            apart[..., 0], apart[..., 1], drift[..., 0], drift[..., 1],
+            self._delta, self._delta_v, wanted[:, 0], wanted[:, 1],
+        )  # fmt: skip
+        return np.stack([(self._weights * x) @ self._gathered for x in force], axis=-1)
+
+    def _avoid(self, position: Array) -> Array:
+        """The sum of what the sensed obstacles exert."""
+        result = np.zeros_like(position)
+        for x, y, radius in self._obstacles:
+            dx, dy = position[..., 0] - x, position[..., 1] - y
+            with np.errstate(divide="ignore", invalid="ignore"):  # in its middle, where no run goes on
+                force = np.stack(avoidance_force(dx, dy, radius, self._range, self._gain), axis=-1)
+            result += self._sensed(dx * dx + dy * dy)[..., None] * force
+        return result
+
+    def _sensed(self, squared_distances: Array) -> Array:
+        """1 for each robot that is allowed to see an obstacle, else 0; shape (..., N)."""
+        if not self._masked.any():
+            return np.ones_like(squared_distances)
+        columns = list(np.moveaxis(squared_distances, -1, 0))
+        seen = np.stack([nearest(columns, i) for i in range(len(columns))], axis=-1)
+        return np.where(self._masked, seen, 1.0)
+
+
+BLOCKS = ("tracking", "consensus", "avoidance")
+"""The blocks of a robot whose forces add up to its control."""

@@ -98,6 +98,8 @@ def run(
     except (OutputError, LoweringError) as error:
         _stop(str(error), WRONG_INPUT)
     console.print(_summary(resolved, figures.to_dict()))
+    if remark := result.attrs.get("remark"):
+        console.print(remark, soft_wrap=True)
     console.print(f"Results in {folder}, pictures in {folder / 'figures'}.", soft_wrap=True)
 
 

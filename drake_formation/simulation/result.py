@@ -7,6 +7,7 @@ import numpy as np
 
 from drake_formation.formation import graphs
 from drake_formation.scenario import Scenario, derive, to_yaml
+from drake_formation.simulation.obstacles import chattering
 from drake_formation.simulation.series import Series
 
 if TYPE_CHECKING:
@@ -45,7 +46,8 @@ def labelled_result(scenario: Scenario, series: Series) -> "xr.Dataset":
 
     Returns:
         A dataset over ``time`` (every step of the integrator), ``robot`` (from 1), ``axis`` (x, y), ``spring``
-        (``1-2``) and ``obstacle`` (from 1). ``deviation`` is NaN before the hand-off.
+        (``1-2``) and ``obstacle`` (from 1). ``deviation`` is NaN before the hand-off. The attribute ``remark`` says
+        what to know about the run, if there is anything.
     """
     import xarray as xr  # slow to import, and not needed to build a diagram
 
@@ -70,4 +72,6 @@ def labelled_result(scenario: Scenario, series: Series) -> "xr.Dataset":
         "drake_formation_version": version("drake-formation"),
         "drake_version": version("drake"),
     }
+    if remark := chattering(scenario, series["clearance"][series["phase"] == 1]):
+        attributes["remark"] = remark
     return xr.Dataset(variables, coordinates, attributes)

@@ -124,7 +124,9 @@ def run(
     except (OutputError, LoweringError) as error:
         stop(str(error), WRONG_INPUT)
     say(_summary(result, figures.to_dict(), checked))
-    say("\n".join([*written.remarks(), f"Results in {written.folder}, pictures in {written.folder / PICTURES}."]))
+    remark = [str(result.attrs["remark"])] if "remark" in result.attrs else []
+    where = f"Results in {written.folder}, pictures in {written.folder / PICTURES}."
+    say("\n".join([*remark, *written.remarks(), where]))
 
 
 @app.command()

@@ -27,25 +27,34 @@ def start(diagram: Diagram, method: str) -> Start:
     lowered = lower(diagram)
 
     def run(scenario: Scenario, context: Context, progress: Progress | None) -> CompiledRun:
-        require_compiled_settings(scenario)
+        require_compiled_settings(scenario, method)
         return CompiledRun(scenario, lowered, method, context, progress)
 
     return run
 
 
-def require_compiled_settings(scenario: Scenario) -> None:
-    """Refuse simulator settings that compiled runs do not have.
+def require_compiled_settings(scenario: Scenario, method: str = "dormand_prince") -> None:
+    """Refuse settings that compiled runs do not have.
+
+    Args:
+        scenario: what is to run.
+        method: how it is integrated.
 
     Raises:
         ScenarioError: with what is allowed.
     """
-    settings, faults = scenario.simulator, []
+    settings, avoidance, faults = scenario.simulator, scenario.avoidance, []
     if settings.integration_scheme != "runge_kutta5":
         scheme = shown(settings.integration_scheme)
         faults.append(Fault(("simulator", "integration_scheme"), "not compiled", scheme, "runge_kutta5"))
     if settings.target_realtime_rate:
         rate = shown(settings.target_realtime_rate)
         faults.append(Fault(("simulator", "target_realtime_rate"), "a compiled run keeps no clock", rate, "0"))
+    switches = avoidance.sensing == "nearest" and avoidance.obstacles and avoidance.gain > 0
+    if method == "exponential" and switches and resolve(scenario).robots > 1:
+        message = "the engine exponential cannot step over the jump in force where another robot becomes the nearest"
+        allowed = "in_range, or the engine compiled or blocks"
+        faults.append(Fault(("avoidance", "sensing"), message, avoidance.sensing, allowed))
     if faults:
         raise ScenarioError(faults)
 

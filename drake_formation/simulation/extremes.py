@@ -104,17 +104,25 @@ def last_beyond(vectors: Vectors, bound: float) -> tuple[int, float] | None:
     return None
 
 
-def _last_share_beyond(vectors: Vectors, step: np.intp, bound: float) -> float | None:
-    """How much of a step has passed when any vector is longer than a bound for the last time, or None."""
-    last, low, high = None, 0.0, 1.0
-    for _ in range(ROUNDS):
-        share = np.linspace(low, high, CUTS + 1)
-        beyond = np.flatnonzero((_length(vectors.within(np.array([step]), share[None])[0]) > bound).any(axis=-1))
-        if not len(beyond):
-            break
-        last = low = float(share[beyond[-1]])
-        high = float(share[min(beyond[-1] + 1, CUTS)])
-    return last
+def _last_share_beyond(
+    vectors: Vectors, step: np.intp, bound: float, low: float = 0.0, high: float = 1.0, rounds: int = ROUNDS
+) -> float | None:
+    """How much of a step has passed when any vector is longer than a bound for the last time, or None.
+
+    Looked for from the end, in pieces that leave their chords so much less as they are shorter; a piece whose chord and
+    what it may leave it by stay below the bound hides nothing.
+    """
+    share = np.linspace(low, high, CUTS + 1)
+    lengths = _length(vectors.within(np.array([step]), share[None])[0])
+    reach = np.maximum(lengths[:-1], lengths[1:]) + vectors.bulge[step] * ((high - low) / CUTS) ** 2
+    for piece in range(CUTS)[::-1]:
+        if (lengths[piece + 1] > bound).any():
+            return float(share[piece + 1])
+        if rounds > 1 and (reach[piece] > bound).any():
+            within = _last_share_beyond(vectors, step, bound, share[piece], share[piece + 1], rounds - 1)
+            if within is not None:
+                return within
+    return float(share[0]) if (lengths[0] > bound).any() else None
 
 
 def _extreme(vectors: Vectors, sign: float, more: Array, on_chord: Score, each: bool) -> Array:

@@ -1,4 +1,4 @@
-"""Whether a run took its obstacles seriously: no robot begins inside one, and none leaps over what it should feel."""
+"""Whether a run took its obstacles seriously: none entered, none leapt over, none handed to and fro without end."""
 
 from dataclasses import dataclass
 
@@ -12,6 +12,9 @@ Array = NDArray[np.float64]
 
 SHARE = 0.25
 """How far a robot may move in one step, as a share of the distance from which it feels an obstacle's centre."""
+
+CHATTER = 100
+"""Changes of the robot that is nearest to an obstacle; a formation that passes it has a few."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +92,30 @@ def worst_leap(scenario: Scenario, recording: Recording) -> Leap | None:
             if worst is None or longest < worst.longest:
                 worst = Leap(float(times[sample]), int(robot) + 1, number, longest)
     return worst
+
+
+def chattering(scenario: Scenario, clearance: Array) -> str:
+    """What to say of obstacles that robots at the same distance see in turns, or nothing.
+
+    Where each is pushed away as soon as it is the nearest, the turns become as short as the integrator's steps.
+
+    Args:
+        scenario: what ran.
+        clearance: of every robot from every obstacle during transport (m), shape (samples, N, obstacles).
+    """
+    fields = [part.config for part in resolve(scenario).parts["avoidance"]]
+    masked = [field for field in fields if getattr(field, "sensing", "") == "nearest" and field.gain > 0.0]
+    if not masked or not clearance.size:
+        return ""
+    felt = clearance.min(axis=1)[1:] < max(field.range for field in masked)
+    changes = ((np.diff(np.argmin(clearance, axis=1), axis=0) != 0) & felt).sum(axis=0)
+    if changes.max() < CHATTER:
+        return ""
+    return (
+        f"Obstacle {int(np.argmax(changes)) + 1} was seen by another robot {int(changes.max())} times: robots are "
+        "equally near to it, and each is pushed away as soon as it is the nearest. Such a run takes very short steps. "
+        "Try avoidance.sensing=in_range, or another place for the obstacle or the goal."
+    )
 
 
 def _least_distance(offset: Array, move: Array) -> Array:

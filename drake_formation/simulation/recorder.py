@@ -1,7 +1,7 @@
 """What a run leaves behind, sample by sample, at every step the integrator takes."""
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,7 +60,7 @@ class Recorder:
             NonFiniteStateError: a state is infinite or not a number; the sample is not kept.
         """
         time = context.get_time()
-        sample = {name: np.array([port.Eval(context) for port in ports]) for name, ports in self._ports.items()}
+        sample = {name: np.array([_shown(port, context) for port in ports]) for name, ports in self._ports.items()}
         if not np.isfinite(sample["state"]).all():
             raise NonFiniteStateError
         if self._times and self._times[-1] == time:
@@ -93,3 +93,12 @@ class Recorder:
         """Values of a recorded port, shape (samples, N, size)."""
         ports = self._ports[port]
         return np.reshape(self._samples[port], (len(self._times), len(ports), ports[0].size()))
+
+
+def _shown(port: Any, context: Context) -> Array:
+    """The value of a port; not a number where there is none, as between robots in one place."""
+    try:
+        shown: Array = port.Eval(context)
+    except ZeroDivisionError:
+        return np.full(port.size(), np.nan)
+    return shown

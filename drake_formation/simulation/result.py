@@ -9,6 +9,7 @@ from drake_formation.scenario import resolve, to_yaml
 from drake_formation.scenario.source import parse
 from drake_formation.scenario.validate import validate
 from drake_formation.simulation.choice import Choice
+from drake_formation.simulation.obstacles import chattering
 from drake_formation.simulation.series import Series
 
 if TYPE_CHECKING:
@@ -52,7 +53,8 @@ def labelled_result(series: Series) -> "xr.Dataset":
         A dataset over ``time`` (every step of the integrator), ``robot`` (from 1), ``axis`` (x, y), ``spring``
         (``1-2``) and ``obstacle`` (from 1). ``deviation`` is NaN before the hand-off. A sample
         at the hand-off shows what is so from then on. Between samples the motion is the quintic with position,
-        velocity and acceleration at both ends; :func:`drake_formation.metrics` measures that.
+        velocity and acceleration at both ends; :func:`drake_formation.metrics` measures that. The attribute ``remark``
+        says what to know about the run, if there is anything.
     """
     import xarray as xr  # slow to import, and not needed to build a diagram
 
@@ -81,6 +83,8 @@ def labelled_result(series: Series) -> "xr.Dataset":
     }
     if series.choice.reason:
         attributes["engine_reason"] = series.choice.reason
+    if remark := chattering(scenario, series["clearance"][series["phase"] == 1]):
+        attributes["remark"] = remark
     return xr.Dataset(variables, coordinates, attributes)
 
 

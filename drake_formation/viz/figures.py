@@ -168,7 +168,7 @@ def _mark_transport(axes: Axes, result: xr.Dataset, only: bool = False) -> None:
     """Grid, and where the object is carried."""
     axes.grid(alpha=0.3)
     times, carried = result["time"].values, result["phase"].values == 1
-    if not carried.any():
+    if carried.sum() < 2:  # a run that ended at its hand-off has no transport to show
         return
     hand_off = times[carried][0]
     axes.set_xlim(hand_off if only else times[0], times[-1])

@@ -33,7 +33,6 @@ def test_a_scenario_needs_no_more_than_this():
     [
         ("side:", "sied:", "", "f.yaml:5: formation.sied: unknown key; allowed: shape, robots, side, heading; did"),
         ("", "", "spring: {}", "f.yaml:10: spring: unknown key; allowed: name, description, formation"),
-        ("", "", "<<: {}", "f.yaml:10: <<: unknown key"),
         ("  side: 1.0\n", "", "", "f.yaml:2: formation.side: missing; allowed: a number > 0 and <= 1000000 — distance"),
         ("name: test\n", "", "", "f.yaml:1: name: missing; allowed: text — short name"),
         (

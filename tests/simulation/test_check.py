@@ -101,7 +101,7 @@ def test_a_check_that_fails_leaves_the_run(cli, monkeypatch):
     def fail(scenario, result, progress):
         raise SimulationError("the second run stopped", 1.0, 1, result)
 
-    monkeypatch.setattr(sys.modules["drake_formation.check"], "check", fail)
+    monkeypatch.setattr(sys.modules["drake_formation.simulation.check"], "check", fail)
     status, _, err = cli("run", "line", *ARGUMENTS, "--check", "--out", "o")
     assert status == 3
     assert "its check is not: the second run stopped" in err

@@ -37,6 +37,14 @@ def test_another_integrator_is_refused():
         simulate(scenario, engine="compiled")
 
 
+def test_the_exponential_engine_refuses_a_force_that_jumps_before_it_runs():
+    scenario = load_scenario("line", overrides={"avoidance.sensing": "nearest"})
+    with pytest.raises(ScenarioError, match=r"avoidance.sensing: .*nearest.*allowed: in_range, or the engine compiled"):
+        simulate(scenario, engine="exponential")
+    for none in ({"avoidance.obstacles": []}, {"avoidance.gain": 0.0}):
+        simulate(load_scenario("line", overrides={"avoidance.sensing": "nearest", **none}), engine="exponential")
+
+
 def test_a_run_that_diverges_keeps_what_was_recorded():
     overrides = {"consensus.delta": 1e8, "simulator.use_error_control": False, "aggregation.duration": 1.0}
     with pytest.raises(SimulationError, match="no longer finite") as caught:

@@ -1,5 +1,7 @@
 """Obstacles smaller than a step are neither stepped into nor over, on any engine."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -113,3 +115,33 @@ def test_a_robot_inside_an_obstacle_at_the_hand_off_is_named(engine):
     with pytest.raises(SimulationError, match=r"robot 2 is inside obstacle 1 at t = 4 s") as caught:
         simulate(load_scenario("line", overrides=overrides), engine=engine)
     assert caught.value.partial["time"].values[-1] == 4.0
+
+
+TIE = {
+    "aggregation.duration": 0.0,
+    "robots.start": {"centre": [8.0, 3.5]},
+    "transport.goal": [25.0, 3.5],
+    "transport.duration": 6.0,
+    "consensus.delta": 1e4,
+    "consensus.delta_v": 300.0,
+    "avoidance.sensing": "nearest",
+    "avoidance.obstacles": [{"position": [10.0, 3.5]}],
+}
+
+
+def remark(**changes):
+    return simulate(load_scenario("quadrilateral", overrides={**TIE, **changes}), engine="compiled").attrs.get("remark")
+
+
+def test_robots_that_see_an_obstacle_in_turns_are_remarked_upon():
+    assert remark().startswith("Obstacle 1 was seen by another robot ")
+    assert remark(**{"avoidance.sensing": "in_range"}) is None
+    assert remark(**{"avoidance.gain": 0.0}) is None
+    assert remark(**{"avoidance.obstacles": [{"position": [10.0, 5.0]}]}) is None
+
+
+def test_the_command_passes_the_remark_on(cli):
+    settings = [part for path, value in TIE.items() for part in ("--set", f"{path}={json.dumps(value)}")]
+    status, out, _ = cli("run", "quadrilateral", *settings, "--engine", "compiled", "--out", "tie")
+    assert status == 0
+    assert "Try avoidance.sensing=in_range" in out

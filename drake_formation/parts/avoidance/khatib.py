@@ -115,7 +115,8 @@ class Khatib(Part):
         gain: NonNegative = Field(default=31.56, description="repulsive gain η (N m²); inferred: 31.56")
         sensing: Literal["in_range", "nearest"] = Field(
             default="in_range",
-            description="in_range: every robot within range feels an obstacle; nearest: only the one nearest to it",
+            description="in_range: every robot within range feels an obstacle; nearest: only the one nearest to it, "
+            "not with the engine exponential; robots that stay equally near feel it in turns, in very short steps",
         )
 
     def structure(self) -> Hashable:

@@ -9,6 +9,7 @@ from drake_formation.lowering import CompiledDiagram, Status, lower
 from drake_formation.parameters import robot_name
 from drake_formation.scenario import Scenario, ScenarioError, resolve
 from drake_formation.simulation.engines import Progress, Start
+from drake_formation.simulation.phases import felt_obstacles
 from drake_formation.simulation.recorder import RECORDED, NonFiniteStateError
 
 Array = NDArray[np.float64]
@@ -43,18 +44,20 @@ def require_compiled_settings(scenario: Scenario, method: str = "dormand_prince"
     Raises:
         ScenarioError: with what is allowed.
     """
-    settings, avoidance, faults = scenario.simulator, scenario.avoidance, []
+    settings, faults = scenario.simulator, []
     if settings.integration_scheme != "runge_kutta5":
         scheme = shown(settings.integration_scheme)
         faults.append(Fault(("simulator", "integration_scheme"), "not compiled", scheme, "runge_kutta5"))
     if settings.target_realtime_rate:
         rate = shown(settings.target_realtime_rate)
         faults.append(Fault(("simulator", "target_realtime_rate"), "a compiled run keeps no clock", rate, "0"))
-    switches = avoidance.sensing == "nearest" and avoidance.obstacles and avoidance.gain > 0
-    if method == "exponential" and switches and resolve(scenario).robots > 1:
+    formation = resolve(scenario)
+    fields = [part.config for part in formation.parts["avoidance"]]
+    switches = felt_obstacles(formation) and any(getattr(field, "sensing", "") == "nearest" for field in fields)
+    if method == "exponential" and switches and formation.robots > 1:
         message = "the engine exponential cannot step over the jump in force where another robot becomes the nearest"
         allowed = "in_range, or the engine compiled or blocks"
-        faults.append(Fault(("avoidance", "sensing"), message, avoidance.sensing, allowed))
+        faults.append(Fault(("avoidance", "sensing"), message, "nearest", allowed))
     if faults:
         raise ScenarioError(faults)
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from drake_formation import load_scenario, simulate
+from drake_formation import load_scenario, metrics, simulate
 from drake_formation.simulation.clearance import contact, least_clearance
 from drake_formation.simulation.motion import Motion
 from drake_formation.simulation.result import series_of

@@ -284,6 +284,23 @@ def scenarios() -> None:
     say(table)
 
 
+@app.command()
+def parts() -> None:
+    """List the parts that the boxes of the diagram may be, and which package brings each."""
+    from drake_formation.parts.registry import broken, kinds
+    from drake_formation.parts.roles import ROLES
+
+    table = Table("role", "section", "kind", "what it is", "from")
+    for name, role in ROLES.items():
+        section = ".".join(map(str, role.section))
+        for kind, part in kinds(name).items():
+            meaning = (part.__doc__ or "").splitlines()[0] if part.__doc__ else ""
+            table.add_row(name, f"{section}, {role.chooser}", kind, meaning, part.distribution)
+    say(table)
+    for reason in dict.fromkeys(reason for name in ROLES for reason in broken(name).values()):
+        say(reason)
+
+
 def _simulate_with_progress(scenario: Scenario, engine: EngineName) -> "xr.Dataset":
     from drake_formation.simulation import simulate
 
@@ -346,25 +363,22 @@ def _number(value: float | list[float] | None) -> str:
 
 def _description(scenario: Scenario) -> Table:
     """What a scenario reads as."""
-    count = resolve(scenario).robots
+    from drake_formation.config.errors import shown
+    from drake_formation.parts.roles import ROLES
+    from drake_formation.scenario.owned import section
+
+    formation = resolve(scenario)
     table = Table("part", "reads as", title=scenario.name)
-    table.add_row("formation", f"{scenario.formation.shape} of {count}")
-    for name, graph in (
-        ("springs", resolve(scenario).springs.graph),
-        ("consensus", resolve(scenario).channels.graph),
-    ):
+    table.add_row("formation", f"{scenario.formation.shape} of {formation.robots}")
+    for name, graph in (("springs", formation.springs.graph), ("consensus", formation.channels.graph)):
         edges = " ".join(f"{i + 1}-{j + 1}" for i, j in graphs.edges(graph)) or "none"
         table.add_row(f"{name} edges", edges)
         table.add_row(f"{name} algebraic connectivity", f"{graphs.algebraic_connectivity(graph):.4g}")
-    springs, consensus = scenario.springs, scenario.consensus
-    table.add_row(
-        "springs", f"{springs.law}, k = {_values(springs.stiffness)} N/m, c = {_values(springs.damping)} N s/m"
-    )
-    table.add_row("consensus", f"δ = {consensus.delta:g} N/m, δ_v = {consensus.delta_v:g} N s/m")
-    table.add_row("channels", str(graphs.channels(resolve(scenario).channels.graph)))
-    table.add_row("masses", f"{_values(scenario.robots.mass)} kg")
+    table.add_row("channels", str(len(formation.channels.pairs)))
+    for name, role in ROLES.items():
+        written = section(scenario, name)
+        fields = {key for cls in {type(part) for part in formation.parts[name]} for key in cls.Config.model_fields}
+        given = [f"{key} = {shown(getattr(written, key))}" for key in type(written).model_fields if key in fields]
+        kind = shown(getattr(written, role.chooser))
+        table.add_row(".".join(map(str, role.section)), ": ".join(filter(None, [kind, ", ".join(given)])))
     return table
-
-
-def _values(value: float | tuple[float, ...]) -> str:
-    return ", ".join(f"{number:g}" for number in value) if isinstance(value, tuple) else f"{value:g}"

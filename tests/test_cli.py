@@ -163,3 +163,17 @@ def test_reproduce_names_the_nearest_part(cli):
     status, _, err = cli("reproduce", "--only", "tabel3")
     assert status == 2
     assert "did you mean 'table3'" in err
+
+
+def test_parts_are_listed_with_their_packages(cli):
+    status, out, _ = cli("parts")
+    assert status == 0
+    for word in ("robot", "hookean", "set_point", "ideal"):
+        assert word in out
+
+
+def test_validate_shows_each_robots_own_values(cli):
+    status, out, _ = cli("validate", "line", "--set", "robots.mass={1: 50.0, default: 40.0}")
+    assert status == 0
+    assert "50.0" in out
+    assert "hookean" in out

@@ -61,9 +61,9 @@ def compiled(diagram: Diagram) -> Start:
 def exponential(diagram: Diagram) -> Start:
     """The diagram compiled, its linear part integrated exactly; in place of ``runge_kutta5``.
 
-    Its steps may be longer than the oscillations of stiff springs. Where those ring, samples show them as they are at
-    their times, but peaks between samples are not seen. It starts no scenario whose obstacles only the nearest robot
-    senses: there the force jumps.
+    Its steps may be longer than the oscillations of stiff springs, where those have died away; as long as they ring,
+    steps are so short that what is read between samples is near the motion. It starts no scenario whose obstacles only
+    the nearest robot senses: there the force jumps.
 
     Raises:
         LoweringError: a block cannot be compiled.

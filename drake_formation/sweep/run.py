@@ -20,6 +20,8 @@ from drake_formation.sweep.store import Store
 from drake_formation.sweep.work import Outcome, Task, versions
 
 DATASET, FIGURES = "sweep.nc", "figures"
+MISSING = "missing_figures"
+"""Attribute of the dataset that names figures which could not be drawn, and why; not part of the file."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +123,9 @@ def run_sweep(
             from drake_formation.viz.sweep_figures import write_sweep_figures
 
             with _explained(folder / FIGURES):
-                write_sweep_figures(dataset, folder / FIGURES)
+                failures = write_sweep_figures(dataset, folder / FIGURES)
+            if failures:
+                dataset.attrs[MISSING] = "\n".join(f"No figure {name}: {reason}" for name, reason in failures.items())
     return dataset
 
 

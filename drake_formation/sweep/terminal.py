@@ -12,7 +12,7 @@ from rich.text import Text
 
 from drake_formation.sweep.dataset import DONE, FAILED, FAILURES
 from drake_formation.sweep.quantities import metric_names
-from drake_formation.sweep.run import DATASET, FIGURES, Tally
+from drake_formation.sweep.run import DATASET, FIGURES, MISSING, Tally
 from drake_formation.sweep.run import Progress as Report
 
 
@@ -71,7 +71,8 @@ def closing(dataset: xr.Dataset, folder: Path) -> tuple[str, int]:
     failed = int((dataset["status"] == FAILED).sum())
     done = int((dataset["status"] == DONE).sum())
     pictures = f", pictures in {folder / FIGURES}" if any((folder / FIGURES).glob("*.png")) else ""
-    text = f"{done} runs in {folder / DATASET}{pictures}."
+    lines = [str(dataset.attrs[MISSING])] if MISSING in dataset.attrs else []
+    text = "\n".join([*lines, f"{done} runs in {folder / DATASET}{pictures}."])
     if failed:
         text += f"\n{failed} runs failed: why is in {folder / FAILURES}. --retry-failed runs them again."
     return text, failed

@@ -95,15 +95,28 @@ def test_what_a_plan_avoids_has_the_formations_size():
     np.testing.assert_array_equal(part.field(formation).discs, [[6, 1.8, 1.0]])
 
 
-@settings(max_examples=25)
-@given(generators)
-def test_a_sound_plan_keeps_every_robot_clear_of_what_it_knows(rng):
-    obstacles = [
+def scattered_obstacles(rng):
+    return [
         {"position": position.tolist(), "radius": float(rng.uniform(0, 0.5))}
         for position in rng.uniform([2, -3], [10, 3], (3, 2))
     ]
-    example = scenario({"kind": "potential_field", "clearance": 0.5, "reach": 1.5}, obstacles)
-    if check(example):
+
+
+NARROW = {"kind": "potential_field", "clearance": 0.5, "reach": 1.5}
+
+
+def test_most_scattered_obstacles_leave_a_plan():
+    sound = [not check(scenario(NARROW, scattered_obstacles(np.random.default_rng(seed)))) for seed in range(40)]
+    assert sum(sound) >= 20
+
+
+@settings(max_examples=25)
+@given(generators)
+def test_a_sound_plan_keeps_every_robot_clear_of_what_it_knows(rng):
+    obstacles = scattered_obstacles(rng)
+    example = scenario(NARROW, obstacles)
+    if faults := check(example):
+        assert all("plan" in fault.message or "obstacle" in fault.message for fault in faults)
         return
     motion = trajectory(example)
     centres = motion.vector_values(np.linspace(0, motion.end_time(), 1500)).T
@@ -212,7 +225,7 @@ def test_where_there_is_nothing_to_plan_a_plan_is_refused():
 def test_a_transport_too_long_for_a_motion_is_told_where_it_is_written():
     example = data({"kind": "minimum_jerk"})
     example["transport"]["duration"] = 1e9
-    (fault,) = map(str, check(Scenario.model_validate(example)))
+    fault, *_ = map(str, check(Scenario.model_validate(example)))
     assert fault.startswith("transport.duration: no duration of a motion (got 1000000000.0)")
 
 

@@ -2,7 +2,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from strategies import generators
 
 from drake_formation.parts.references.minimum_jerk import minimum_jerk
@@ -37,13 +37,38 @@ def random_field(rng):
     return field(np.column_stack([centres, rng.uniform(0.2, 1.5, 3)])[: rng.integers(1, 4)])
 
 
+def potential(points, world):
+    """‖p − goal‖ + Σ ½ η (1/ρ − 1/ρ0)², infinite inside a disc; written down once more."""
+    away = clearances(points, world.discs)
+    with np.errstate(divide="ignore"):
+        near = np.maximum(1 / np.maximum(away, 0.0) - 1 / world.reaches(), 0.0)
+    return np.linalg.norm(points - world.goal, axis=-1) + (0.5 * world.gains() * near**2).sum(axis=-1)
+
+
+def in_a_hollow(place, world, radius=0.6 * CLEARANCE):
+    """Whether the potential within a circle about a place is lower than anywhere on it: a local minimum."""
+    angles, shares = np.linspace(0, 2 * np.pi, 721), np.linspace(0, 0.95, 60)
+    around = np.column_stack([np.cos(angles), np.sin(angles)])
+    within = (place + radius * shares[:, None, None] * around).reshape(-1, 2)
+    return potential(within, world).min() < potential(place + radius * around, world).min()
+
+
+def planned(world):
+    """The plan, or None where it is stuck, which must be in a hollow."""
+    try:
+        return plan(START, world)
+    except StuckError as error:
+        place = error.place
+    assert in_a_hollow(place, world)
+    return None
+
+
 @few
 @given(generators)
-def test_a_plan_reaches_the_goal_clear_of_every_disc_or_is_no_plan(rng):
+def test_a_plan_reaches_the_goal_clear_of_every_disc_or_is_stuck_in_a_hollow(rng):
     world = random_field(rng)
-    try:
-        path = plan(START, world)
-    except StuckError:
+    path = planned(world)
+    if path is None:
         return
     np.testing.assert_array_equal(path[[0, -1]], [START, GOAL])
     assert clearances(path, world.discs).min() > 0
@@ -63,15 +88,25 @@ def test_past_one_disc_a_plan_keeps_the_clearance(rng):
 def test_a_plan_flows_downhill(rng):
     """No disc in reach, the way is straight; so it turns only where it is pushed."""
     world = random_field(rng)
-    try:
-        path = plan(START, world)
-    except StuckError:
-        assume(False)
+    path = planned(world)
+    if path is None:
+        return
     free = (clearances(path, world.discs) >= world.reaches()).all(axis=1)
     to_goal = GOAL - path
     for k in np.flatnonzero(free[1:-1]) + 1:
         step = path[k + 1] - path[k]
         assert step @ to_goal[k] == pytest.approx(np.linalg.norm(step) * np.linalg.norm(to_goal[k]), rel=1e-9)
+
+
+def test_most_fields_have_a_plan():
+    """What the laws above let pass is the exception."""
+    stuck = 0
+    for seed in range(60):
+        try:
+            plan(START, random_field(np.random.default_rng(seed)))
+        except StuckError:
+            stuck += 1
+    assert stuck <= 15
 
 
 @few

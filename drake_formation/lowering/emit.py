@@ -1,5 +1,6 @@
 """Traced expressions as the source of a compiled function over all blocks of a kind."""
 
+import math
 from collections import ChainMap
 from collections.abc import MutableMapping
 from dataclasses import dataclass, field
@@ -75,6 +76,11 @@ def emit(graph: Graph, roots: list[int], inputs: int) -> Kernel:
     """
     finder = LoopFinder(graph)
     return _Writer(graph, finder.stores(roots), finder.turns, inputs).kernel()
+
+
+def _literal(value: float) -> str:
+    text = repr(abs(value)) if math.isfinite(value) else f"math.{abs(value)!r}"
+    return text if value >= 0 else f"(-{text})"
 
 
 def _length_line(loop: int, groups: int) -> str:
@@ -171,7 +177,7 @@ class _Writer:
             scope = scope.around or scope
         node = self._graph.nodes[number]
         if node.operation == "constant" and isinstance(node.content, float):
-            return repr(node.content) if node.content >= 0 else f"({node.content!r})"
+            return _literal(node.content)
         if number not in scope.names:
             if node.operation == "Sum":
                 self._loop(node.content, self._depth[number])

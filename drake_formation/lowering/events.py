@@ -6,7 +6,7 @@ import numpy as np
 from pydrake.systems.framework import Context
 from pydrake.systems.primitives import VectorLogSink
 
-from drake_formation.lowering.declared import is_pythons, require_quiet
+from drake_formation.lowering.declared import is_pythons, require_known_events
 from drake_formation.lowering.errors import LoweringError
 from drake_formation.lowering.ticks import Ticks
 from drake_formation.lowering.wiring import Wiring
@@ -36,7 +36,7 @@ class Updates:
             if block.GetWitnessFunctions(context):
                 raise LoweringError(path, "it has witness functions")
             if not is_pythons(block) and not isinstance(block, VectorLogSink):
-                require_quiet(path, block)
+                require_known_events(path, block, [])
                 if context.num_discrete_state_groups() and not timing:
                     raise LoweringError(path, "it has discrete state without a single periodic update of it")
             if timing:

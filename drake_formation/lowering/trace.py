@@ -123,7 +123,8 @@ class TracedBlock:
         Raises:
             LoweringError: there are such events, or the block does not convert, so that they cannot be known.
         """
-        require_known_events(self.path, self.block, *self._converted)
+        _, declared = self._converted
+        require_known_events(self.path, self.block, declared)
 
     @cached_property
     def _converted(self) -> tuple[Any, list[str]]:

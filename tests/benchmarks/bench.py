@@ -5,21 +5,14 @@ Ratios within one run are meant; the absolute times are of the machine it ran on
 
 import statistics
 import time
-from unittest.mock import patch
 
-import naive
 import numpy as np
 from formations import IN_FORMATION, STIFF
 from independent import solve
+from naive import naive_diagram
 from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
 
 from drake_formation import build_diagram, load_scenario, simulate
-
-
-def naive_diagram(scenario):
-    """The same wiring with naive blocks."""
-    with patch.multiple("drake_formation.diagram", **naive.BLOCKS):
-        return build_diagram(scenario)
 
 
 def derivative_cost(diagram, evaluations=300):

@@ -1,7 +1,14 @@
 """The blocks as one would first write them: small arrays, ports looked up by name. The yardstick for the real ones."""
 
+from contextlib import ExitStack
+from unittest.mock import patch
+
 import numpy as np
 from pydrake.systems.framework import BasicVector, LeafSystem
+
+from drake_formation import build_diagram
+from drake_formation.parts.springs.hookean import Hookean
+from drake_formation.parts.tracking.lqr import lqr_force
 
 
 class Plant(LeafSystem):
@@ -9,7 +16,7 @@ class Plant(LeafSystem):
 
     def __init__(self, neighbours, law, mass, springs, initial_state):
         super().__init__()
-        assert law == "hookean"
+        assert law is Hookean
         self.neighbours, self.mass, self.springs = neighbours, mass[0], springs
         self.DeclareVectorInputPort("force", 2)
         self.DeclareVectorInputPort("phase", 1)
@@ -44,8 +51,10 @@ class Plant(LeafSystem):
 class Tracking(LeafSystem):
     """u_l."""
 
-    def __init__(self, gain, slot, inertia):
+    def __init__(self, law, numbers, slot):
         super().__init__()
+        gain, inertia = numbers
+        assert law is lqr_force
         assert not np.any(inertia)
         self.gain, self.slot = np.asarray(gain), np.asarray(slot)
         self.DeclareVectorInputPort("state", 4)
@@ -109,9 +118,17 @@ class Avoidance(LeafSystem):
 
 
 BLOCKS = {
-    "RobotPlant": Plant,
-    "TrackingController": Tracking,
-    "ConsensusController": Consensus,
-    "ObstacleAvoidance": Avoidance,
+    "robots.point_mass.RobotPlant": Plant,
+    "tracking.lqr.TrackingController": Tracking,
+    "coordination.consensus.ConsensusController": Consensus,
+    "avoidance.khatib.ObstacleAvoidance": Avoidance,
 }
-"""What each block of ``drake_formation.diagram`` is replaced by."""
+"""What each block of the parts is replaced by."""
+
+
+def naive_diagram(scenario):
+    """The same wiring with naive blocks."""
+    with ExitStack() as stack:
+        for name, block in BLOCKS.items():
+            stack.enter_context(patch(f"drake_formation.parts.{name}", block))
+        return build_diagram(scenario)

@@ -5,7 +5,7 @@ from pydrake.systems.framework import LeafSystem
 from pydrake.systems.primitives import DiscreteTimeDelay, Gain, LinearSystem, Sine, ZeroOrderHold
 
 from drake_formation.lowering import LoweringError
-from drake_formation.lowering.declared import is_pythons, recorded, require_known_events, require_quiet
+from drake_formation.lowering.declared import is_pythons, recorded, require_known_events
 from tests.lowering.random_diagrams import INERT, REFUSED, Pushed, Sampled
 
 
@@ -34,13 +34,29 @@ def test_nothing_is_left_of_the_stand_in():
 def test_what_would_be_left_out_is_refused(declare):
     block = Sampled(1, 0.5, 0.25, declare)
     with pytest.raises(LoweringError, match="'here'"):
-        require_known_events("here", block, *conversion(block))
+        require_known_events("here", block, conversion(block)[1])
+
+
+@pytest.mark.parametrize("declare", REFUSED.values(), ids=REFUSED)
+def test_what_is_declared_on_a_block_later_is_found_by_running_it(declare):
+    block = Sampled(1, 0.5, 0.25)
+    declare(block)
+    with pytest.raises(LoweringError, match="'here'"):
+        require_known_events("here", block, conversion(block)[1])
+
+
+@pytest.mark.parametrize("period", [1e-3, 0.5, 3.0, 1e4])
+def test_what_is_published_now_and_then_is_found(period):
+    block = Pushed(1)
+    block.DeclarePeriodicPublishEvent(period, 0.7 * period, lambda context: None)
+    with pytest.raises(LoweringError, match="event of its own time"):
+        require_known_events("here", block, [])
 
 
 @pytest.mark.parametrize("declare", [None, *INERT.values()])
 def test_what_is_carried_out_or_never_happens_is_not(declare):
     block = Sampled(1, 0.5, 0.25, declare)
-    require_known_events("here", block, *conversion(block))
+    require_known_events("here", block, conversion(block)[1])
 
 
 @pytest.mark.parametrize(
@@ -56,7 +72,7 @@ def test_what_is_carried_out_or_never_happens_is_not(declare):
 )
 def test_drakes_own_blocks_are_quiet_between_their_ticks(block):
     assert not is_pythons(block)
-    require_quiet("here", block)
+    require_known_events("here", block, [])
 
 
 def test_pythons_blocks_are_told_from_drakes():

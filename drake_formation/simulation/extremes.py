@@ -20,7 +20,7 @@ Score = Callable[[Array, Array], Array]
 CUTS = 32
 """Parts into which a stretch is cut."""
 ROUNDS = 6
-"""How often at most; by then part that is kept of a step is a millionth of it."""
+"""How often at most; by then a part is a millionth of its step or less."""
 NEGLIGIBLE = 1e-9
 """A step that may reach no further than this beyond what is known is discarded (m, N)."""
 

@@ -21,6 +21,8 @@ CUTS = 32
 """Parts into which a stretch is cut."""
 ROUNDS = 6
 """How often at most; by then a part is a millionth of its step or less."""
+FINE = 1e-6
+"""A part of a step no longer than this is cut for the last time."""
 NEGLIGIBLE = 1e-9
 """A step that may reach no further than this beyond what is known is discarded (m, N)."""
 
@@ -98,23 +100,36 @@ def last_beyond(vectors: Vectors, bound: float) -> tuple[int, float] | None:
         np.maximum(_length(vectors.samples[first:-1]), _length(vectors.samples[first + 1 :])) + vectors.bulge[first:]
     )
     for step in np.flatnonzero((reach > bound).any(axis=1))[::-1] + first:
-        share = _last_share_beyond(vectors, step, bound)
+        share = _last_share_beyond(vectors, step, bound, 0.0, 1.0, vectors.bulge[step])
         if share is not None:
             return int(step), share
     return None
 
 
-def _last_share_beyond(vectors: Vectors, step: np.intp, bound: float) -> float | None:
-    """How much of a step has passed when any vector is longer than a bound for the last time, or None."""
-    last, low, high = None, 0.0, 1.0
-    for _ in range(ROUNDS):
-        share = np.linspace(low, high, CUTS + 1)
-        beyond = np.flatnonzero((_length(vectors.within(np.array([step]), share[None])[0]) > bound).any(axis=-1))
-        if not len(beyond):
-            break
-        last = low = float(share[beyond[-1]])
-        high = float(share[min(beyond[-1] + 1, CUTS)])
-    return last
+def _last_share_beyond(
+    vectors: Vectors, step: np.intp, bound: float, low: float, high: float, bulge: Array
+) -> float | None:
+    """How much of a step has passed when any vector is longer than a bound for the last time, or None.
+
+    Args:
+        vectors: what to look at.
+        step: index of the sample before.
+        bound: the length.
+        low: where to look from,
+        high: and to, as shares of the step.
+        bulge: how far each vector leaves the chord from there to there at the most, shape (vectors,).
+    """
+    share, bulge = np.linspace(low, high, CUTS + 1), bulge / CUTS**2
+    lengths = _length(vectors.within(np.array([step]), share[None])[0])
+    longer = np.maximum(lengths[:-1], lengths[1:])
+    for part in np.flatnonzero((longer + bulge > bound).any(axis=1))[::-1]:
+        if high - low > FINE:
+            found = _last_share_beyond(vectors, step, bound, share[part], share[part + 1], bulge)
+            if found is not None:
+                return found
+        elif (longer[part] > bound).any():
+            return float(share[part])
+    return None
 
 
 def _extreme(vectors: Vectors, sign: float, more: Array, on_chord: Score, each: bool) -> Array:

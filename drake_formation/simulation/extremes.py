@@ -20,7 +20,9 @@ Score = Callable[[Array, Array], Array]
 CUTS = 32
 """Parts into which a stretch is cut."""
 ROUNDS = 6
-"""How often at most; by then part that is kept of a step is a millionth of it."""
+"""How often at most; by then a part is a millionth of its step or less."""
+FINE = 1e-6
+"""A part of a step no longer than this is cut for the last time."""
 NEGLIGIBLE = 1e-9
 """A step that may reach no further than this beyond what is known is discarded (m, N)."""
 
@@ -98,31 +100,36 @@ def last_beyond(vectors: Vectors, bound: float) -> tuple[int, float] | None:
         np.maximum(_length(vectors.samples[first:-1]), _length(vectors.samples[first + 1 :])) + vectors.bulge[first:]
     )
     for step in np.flatnonzero((reach > bound).any(axis=1))[::-1] + first:
-        share = _last_share_beyond(vectors, step, bound)
+        share = _last_share_beyond(vectors, step, bound, 0.0, 1.0, vectors.bulge[step])
         if share is not None:
             return int(step), share
     return None
 
 
 def _last_share_beyond(
-    vectors: Vectors, step: np.intp, bound: float, low: float = 0.0, high: float = 1.0, rounds: int = ROUNDS
+    vectors: Vectors, step: np.intp, bound: float, low: float, high: float, bulge: Array
 ) -> float | None:
     """How much of a step has passed when any vector is longer than a bound for the last time, or None.
 
-    Looked for from the end, in pieces that leave their chords so much less as they are shorter; a piece whose chord and
-    what it may leave it by stay below the bound hides nothing.
+    Args:
+        vectors: what to look at.
+        step: index of the sample before.
+        bound: the length.
+        low: where to look from,
+        high: and to, as shares of the step.
+        bulge: how far each vector leaves the chord from there to there at the most, shape (vectors,).
     """
-    share = np.linspace(low, high, CUTS + 1)
+    share, bulge = np.linspace(low, high, CUTS + 1), bulge / CUTS**2
     lengths = _length(vectors.within(np.array([step]), share[None])[0])
-    reach = np.maximum(lengths[:-1], lengths[1:]) + vectors.bulge[step] * ((high - low) / CUTS) ** 2
-    for piece in range(CUTS)[::-1]:
-        if (lengths[piece + 1] > bound).any():
-            return float(share[piece + 1])
-        if rounds > 1 and (reach[piece] > bound).any():
-            within = _last_share_beyond(vectors, step, bound, share[piece], share[piece + 1], rounds - 1)
-            if within is not None:
-                return within
-    return float(share[0]) if (lengths[0] > bound).any() else None
+    longer = np.maximum(lengths[:-1], lengths[1:])
+    for part in np.flatnonzero((longer + bulge > bound).any(axis=1))[::-1]:
+        if high - low > FINE:
+            found = _last_share_beyond(vectors, step, bound, share[part], share[part + 1], bulge)
+            if found is not None:
+                return found
+        elif (longer[part] > bound).any():
+            return float(share[part])
+    return None
 
 
 def _extreme(vectors: Vectors, sign: float, more: Array, on_chord: Score, each: bool) -> Array:

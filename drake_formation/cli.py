@@ -377,8 +377,19 @@ def _description(scenario: Scenario) -> Table:
     table.add_row("channels", str(len(formation.channels.pairs)))
     for name, role in ROLES.items():
         written = section(scenario, name)
-        fields = {key for cls in {type(part) for part in formation.parts[name]} for key in cls.Config.model_fields}
-        given = [f"{key} = {shown(getattr(written, key))}" for key in type(written).model_fields if key in fields]
+        classes: list[Any] = sorted({type(part) for part in formation.parts[name]}, key=lambda cls: str(cls.kind))
+        fields = {key: its for cls in classes for key, its in cls.Config.model_fields.items()}
+        given = [_reads(key, its.description or "", getattr(written, key)) for key, its in fields.items()]
         kind = shown(getattr(written, role.chooser))
         table.add_row(".".join(map(str, role.section)), ": ".join(filter(None, [kind, ", ".join(given)])))
     return table
+
+
+def _reads(name: str, description: str, value: Any) -> str:
+    """A field with its value, its symbol and its unit, as far as its description has them."""
+    from drake_formation.config.errors import shown
+
+    label, _, rest = description.partition(" (")
+    unit, closed, _ = rest.partition(")")
+    text = f"{value:g}" if isinstance(value, float) else shown(value)
+    return f"{label} = {text} {unit}" if closed and len(label) < 40 else f"{name} = {text}"

@@ -88,7 +88,8 @@ def test_metrics_are_those_of_the_motion(case, engine):
     assert max(off(sampled(result), truth(case)).values()) > 1, "its samples would have done: the test says nothing"
 
 
-@pytest.mark.parametrize("case", sorted(CASES.keys() - RINGING))
+# Where the nearest robot alone senses, forces jump: the exponential engine refuses that.
+@pytest.mark.parametrize("case", sorted(CASES.keys() - RINGING - {"a nearest robot that senses"}))
 def test_the_exponential_engine_has_them_too(case):
     found = off(metrics(run(case, "exponential", 1e-8)), truth(case))
     assert max(found.values()) < 1, found

@@ -101,7 +101,11 @@ class Formation:
     def faults_of_parts(self, roles: tuple[str, ...]) -> Iterator[tuple[str, int, Any]]:
         """What is wrong with the parts of some roles: role, owner and fault."""
         for role in roles:
-            for owner, part in enumerate(self.parts[role]):
+            parts = self.parts[role]
+            classes: set[Any] = set(map(type, parts))
+            if not any(cls.has_checks() for cls in classes):
+                continue
+            for owner, part in enumerate(parts):
                 for fault in part.checks(self, owner):
                     yield role, owner, fault
 

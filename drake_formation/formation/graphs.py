@@ -50,7 +50,7 @@ def _from_edges(edges: Iterable[Edge], robots: int) -> nx.Graph:
 
 def edges(graph: nx.Graph) -> list[Edge]:
     """Edges (i, j) with i < j, sorted: the order in which per-edge quantities are given."""
-    return sorted((min(edge), max(edge)) for edge in graph.edges)
+    return sorted([(i, j) if i < j else (j, i) for i, j in graph.edges])
 
 
 def neighbours(graph: nx.Graph, robot: int) -> list[int]:

@@ -48,6 +48,11 @@ class Part:
         """
         return iter(())
 
+    @classmethod
+    def has_checks(cls) -> bool:
+        """Whether there is anything to check."""
+        return cls.checks is not Part.checks
+
     def numbers(self, formation: Formation, owner: int) -> Numbers:  # noqa: ARG002
         """The block's numeric parameters, in order of their indices; none by default."""
         return ()

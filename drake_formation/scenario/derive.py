@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.formation import graphs, shapes
-from drake_formation.formation.links import Channels
+from drake_formation.formation.links import Channels, Edges
 from drake_formation.scenario.schema import (
     FormationStart,
     Grid,
@@ -80,6 +80,16 @@ def graph(topology: str | tuple[tuple[int, int], ...], robots: int) -> nx.Graph:
     if isinstance(topology, str):
         return nx.freeze(graphs.graph(topology, robots))
     return nx.freeze(graphs.graph([(i - 1, j - 1) for i, j in topology], robots))
+
+
+@functools.lru_cache(maxsize=64)
+def _edges(graph: nx.Graph) -> Edges:
+    return Edges.of(graph)
+
+
+def spring_edges(scenario: Scenario) -> Edges:
+    """The edges of the physical graph."""
+    return _edges(spring_graph(scenario))
 
 
 def spring_graph(scenario: Scenario) -> nx.Graph:

@@ -37,22 +37,58 @@ def handed_out(scenario: Scenario, role: str, owners: Owners) -> tuple[tuple[Par
     if faults := list(owners.faults((*its.section, its.chooser), chosen, listed=False, required=False)):
         return (), faults
     try:
-        classes = [find(role, owners.value(chosen, i, False, its.default)) for i in range(len(owners.names))]
+        if isinstance(chosen, str):
+            classes = [find(role, chosen)] * len(owners.names)
+        else:
+            classes = [find(role, owners.value(chosen, i, False, its.default)) for i in range(len(owners.names))]
     except PartError as error:
         return (), [Fault((*its.section, its.chooser), str(error))]
     if faults := list(_field_faults(its, written, set(classes), owners)):
         return (), faults
-    given = {cls: _given(written, cls) for cls in set(classes)}
+    given = {cls: _Given(written, cls, owners) for cls in set(classes)}
     parts: list[Part] = []
-    alike: dict[type[Part], Part] = {}
+    known: dict[Any, Part | None] = {}
+    if len(given) == 1 and not given[classes[0]].differing:
+        part = _part(its, classes[0], given[classes[0]].values(()), faults)
+        return ((part,) * len(classes) if part else ()), list(dict.fromkeys(faults))
     for index, cls in enumerate(classes):
-        part = alike.get(cls) or _part(its, written, cls, given[cls], owners, index, faults)
-        if part is None:
-            continue
-        if not any(_differs(written, cls, name) for name in given[cls]):
-            alike[cls] = part
-        parts.append(part)
+        own = given[cls].own(index)
+        if (cls, own) not in known:
+            known[cls, own] = _part(its, cls, given[cls].values(own), faults)
+        if part := known[cls, own]:
+            parts.append(part)
     return tuple(parts), list(dict.fromkeys(faults))
+
+
+class _Given:
+    """What a section says of the fields of one kind of part: what is alike for all, and what differs.
+
+    Args:
+        written: the section.
+        cls: the part.
+        owners: for whom values are given.
+    """
+
+    def __init__(self, written: Any, cls: type[Part], owners: Owners) -> None:
+        self._alike: dict[str, Any] = {}
+        self.differing: dict[str, tuple[Any, bool, Any]] = {}
+        self._owners = owners
+        for name, info in cls.Config.model_fields.items():
+            if name not in type(written).model_fields or not _is_set(written, name):
+                continue
+            value, listed = getattr(written, name), takes_lists(cls, name)
+            if isinstance(value, dict) or (isinstance(value, tuple) and not listed):
+                self.differing[name] = value, listed, info.get_default(call_default_factory=True)
+            else:
+                self._alike[name] = value
+
+    def own(self, index: int) -> tuple[Any, ...]:
+        """The values of one owner that may differ from others'."""
+        return tuple([self._owners.value(value, index, *more) for value, *more in self.differing.values()])
+
+    def values(self, own: tuple[Any, ...]) -> dict[str, Any]:
+        """All values of an owner, from its own."""
+        return self._alike | dict(zip(self.differing, own, strict=True))
 
 
 def path_of(scenario: Scenario, role: str, owner: int, path: Path) -> Path:
@@ -82,18 +118,8 @@ def path_of(scenario: Scenario, role: str, owner: int, path: Path) -> Path:
     return tuple(result)
 
 
-def _given(written: Any, cls: type[Part]) -> list[str]:
-    """Fields of a part that its section has a value for."""
-    return [name for name in cls.Config.model_fields if name in type(written).model_fields and _is_set(written, name)]
-
-
 def _is_set(written: Any, name: str) -> bool:
     return name in written.model_fields_set or getattr(written, name) is not None
-
-
-def _differs(written: Any, cls: type[Part], name: str) -> bool:
-    value = getattr(written, name)
-    return isinstance(value, dict) or (isinstance(value, tuple) and not takes_lists(cls, name))
 
 
 def _field_faults(role: Role, written: Any, classes: set[type[Part]], owners: Owners) -> Iterator[Fault]:
@@ -105,15 +131,8 @@ def _field_faults(role: Role, written: Any, classes: set[type[Part]], owners: Ow
         yield from owners.faults((*role.section, name), value, listed=takes_lists(cls, name), required=required)
 
 
-def _part(
-    role: Role, written: Any, cls: type[Part], given: list[str], owners: Owners, index: int, faults: list[Fault]
-) -> Part | None:
-    """One owner's part; what is wrong with its configuration is added to the faults."""
-    values = {}
-    for name in given:
-        info = cls.Config.model_fields[name]
-        default = info.get_default(call_default_factory=True)
-        values[name] = owners.value(getattr(written, name), index, takes_lists(cls, name), default)
+def _part(role: Role, cls: type[Part], values: dict[str, Any], faults: list[Fault]) -> Part | None:
+    """A part with some values; what is wrong with its configuration is added to the faults."""
     try:
         return cls(cls.Config.model_validate(values))
     except ValidationError as error:

@@ -74,7 +74,7 @@ def check(scenario: Scenario) -> list[Fault]:
 
 def _owners(scenario: Scenario, *, sound: bool) -> dict[str, Owners]:
     robots = derive.robot_count(scenario.formation)
-    edges = Edges.of(derive.spring_graph(scenario)).pairs.tolist() if sound else []
+    edges = derive.spring_edges(scenario).pairs.tolist() if sound else []
     channels = derive.channels(scenario) if sound else Channels.of(robots, [])
     return {
         "robot": Owners.robots(robots),
@@ -111,7 +111,7 @@ def _formation(
         starts=starts,
         centre=starts.mean(axis=0),
         goal=np.array(scenario.transport.goal),
-        springs=Edges.of(derive.spring_graph(scenario)) if linked else Edges(robots, np.zeros((0, 2), dtype=np.int64)),
+        springs=derive.spring_edges(scenario) if linked else Edges(robots, np.zeros((0, 2), dtype=np.int64)),
         channels=derive.channels(scenario) if linked else Channels.of(robots, []),
         obstacles=derive.obstacles(scenario),
         begin=scenario.simulator.start_time,

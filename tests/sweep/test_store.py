@@ -144,7 +144,7 @@ def test_a_file_is_no_folder(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(SweepError, match="is a file"), Store(tmp_path / "file", IDENTITY):
         pass
-    with pytest.raises(SweepError, match="cannot be used"), Store(tmp_path / "file" / "below", IDENTITY):
+    with pytest.raises(SweepError, match="cannot be written"), Store(tmp_path / "file" / "below", IDENTITY):
         pass
 
 

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from strategies import scenarios
 
 from drake_formation import load_scenario
-from drake_formation.analysis import linearize, mean_square
+from drake_formation.analysis import linearize
+from drake_formation.analysis.network import mean_square
 from drake_formation.analysis.network.mean_square import mean_square_gain
 from drake_formation.analysis.network.sampled_data import sampled_loop
 

@@ -90,7 +90,10 @@ def test_any_terminal_will_do(command, setting):
 
 
 COMMANDS = {
-    "run": ["run", "line", "--set", "transport.duration=1e5", "--set", "simulator.max_step_size=1e-3", "--out", "o"],
+    "run": [
+        *("run", "line", "--engine", "blocks", "--out", "o"),
+        *("--set", "transport.duration=1e4", "--set", "simulator.max_step_size=1e-3"),
+    ],
     "sweep": ["sweep", "gains", "--out", "o", "--workers", "1"],
     "analyze": ["analyze", "octagon", "--out", "o"],
 }

@@ -8,8 +8,8 @@ from drake_formation.config.errors import Fault, shown
 from drake_formation.lowering import CompiledDiagram, Status, lower
 from drake_formation.parameters import robot_name
 from drake_formation.scenario import Scenario, ScenarioError, resolve
-from drake_formation.simulation.engines import Progress, Start
-from drake_formation.simulation.phases import felt_obstacles
+from drake_formation.simulation.engine import Start
+from drake_formation.simulation.phases import Progress, felt_obstacles
 from drake_formation.simulation.recorder import RECORDED, NonFiniteStateError
 
 Array = NDArray[np.float64]

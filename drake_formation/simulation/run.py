@@ -19,7 +19,8 @@ from drake_formation.parameters import (
 from drake_formation.scenario import Scenario, resolve
 from drake_formation.simulation.choice import Choice, choose
 from drake_formation.simulation.clearance import contact
-from drake_formation.simulation.engines import ENGINES, Engine, Start
+from drake_formation.simulation.engine import Engine, Start
+from drake_formation.simulation.engines import ENGINES
 from drake_formation.simulation.obstacles import Leap, first_hit, worst_leap
 from drake_formation.simulation.phases import Progress, felt_obstacles, without_obstacles
 from drake_formation.simulation.recorder import NonFiniteStateError, Recording

@@ -108,9 +108,9 @@ def _warn_of(folder: Path) -> None:
 
 
 def _compiled_aside(name: str, source: str) -> ModuleType:
-    """Compiled for this process alone."""
+    """Compiled for this process alone; numba keeps nothing of it, for which there may be no room either."""
     with tempfile.TemporaryDirectory() as place:
-        return _compiled(Path(place), name, source)
+        return _compiled(Path(place), name, source.replace("cache=True", "cache=False"))
 
 
 def _remove(entry: Path) -> None:

@@ -57,6 +57,13 @@ def test_a_folder_that_cannot_be_made_is_done_without(folder, monkeypatch):
     assert loaded_elsewhere() == 4.0
 
 
+def test_a_disk_without_room_for_the_machine_code_is_done_without(folder):
+    limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)); "
+    result = subprocess.run([sys.executable, "-c", limit + LOAD], capture_output=True, text=True, check=True)
+    assert result.stdout == "4.0\n"
+    assert not list(folder.iterdir())
+
+
 def test_a_folder_that_is_made_is_its_users_alone(tmp_path, monkeypatch):
     monkeypatch.setenv(cache.FOLDER, str(tmp_path / "new" / "cache"))
     assert loaded_elsewhere() == 4.0

@@ -1,8 +1,13 @@
-"""The package's own sources as one number: results kept on disk say by it which code made them."""
+"""Sources as numbers, the package's own and its guests': results kept on disk say by them which code made them."""
 
 import functools
 import hashlib
+from importlib.metadata import entry_points
+from importlib.util import find_spec
 from pathlib import Path
+
+GROUPS = ("drake_formation.parts", "drake_formation.metrics")
+"""Groups of entry points by which other packages bring parts and metrics."""
 
 
 @functools.cache
@@ -12,6 +17,23 @@ def source_hash() -> str:
     Names and contents count, folders and times do not, so that two installations of the same code agree.
     """
     return hash_of(Path(__file__).parent)
+
+
+@functools.cache
+def guest_hashes() -> dict[str, str]:
+    """The same of every other package that brings parts or metrics, by the name of its module; empty if none does."""
+    points = (entry for group in GROUPS for entry in entry_points(group=group))
+    modules = {entry.module.partition(".")[0] for entry in points}
+    return {name: _hash_of_module(name) for name in sorted(modules)}
+
+
+def _hash_of_module(name: str) -> str:
+    spec = find_spec(name)
+    if spec is None:
+        return "missing"
+    if spec.submodule_search_locations:
+        return "".join(hash_of(Path(folder)) for folder in spec.submodule_search_locations)
+    return hashlib.sha256(Path(spec.origin).read_bytes() if spec.origin else b"").hexdigest()
 
 
 def hash_of(folder: Path) -> str:

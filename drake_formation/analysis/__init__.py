@@ -18,7 +18,7 @@ from drake_formation.analysis.gains.compare import DesignAdvice, design
 from drake_formation.analysis.gains.distributed_lqr import DistributedLqr, distributed_lqr
 from drake_formation.analysis.gains.force_limited_gain import ForceLimited, largest_gain
 from drake_formation.analysis.gains.position_gain import SmallestDelta, smallest_delta
-from drake_formation.analysis.gains.start_limited_gain import OwnForce, own_force, own_largest_gain
+from drake_formation.analysis.gains.start_limited_gain import StartForce, start_force, start_limited_gain
 from drake_formation.analysis.gains.tuning import Tuned, tune
 from drake_formation.analysis.gains.velocity_gain import VelocityGain, velocity_gain
 from drake_formation.analysis.linear.errors import IllPosedError
@@ -29,7 +29,7 @@ from drake_formation.analysis.network.sampled_data import longest_period
 from drake_formation.analysis.response.disturbance import Disturbance, disturbance
 from drake_formation.analysis.response.error_criteria import ForceNoise, HandOff, Pulse, Vibration
 from drake_formation.analysis.response.obstacle_effect import ObstacleEffect, obstacle_effect
-from drake_formation.analysis.response.peak_force import PeakForce, peak_force
+from drake_formation.analysis.response.worst_case_force import WorstCaseForce, worst_case_force
 from drake_formation.analysis.stability.local_lqr import LocalLoop, Margins, local_loops
 from drake_formation.analysis.stability.modes import Mode, Modes, modes
 from drake_formation.analysis.stability.rigidity import SpringLinearization, spring_linearization
@@ -64,17 +64,17 @@ __all__ = [
     "Mode",
     "Modes",
     "ObstacleEffect",
-    "OwnForce",
     "ParetoFront",
-    "PeakForce",
     "Pulse",
     "Questions",
     "Remedy",
     "SmallestDelta",
     "SpringLinearization",
+    "StartForce",
     "Tuned",
     "VelocityGain",
     "Vibration",
+    "WorstCaseForce",
     "at_rest",
     "certify",
     "cheapest_graph",
@@ -91,13 +91,13 @@ __all__ = [
     "loss_margin",
     "modes",
     "obstacle_effect",
-    "own_force",
-    "own_largest_gain",
     "pareto_front",
-    "peak_force",
     "remedies",
     "smallest_delta",
     "spring_linearization",
+    "start_force",
+    "start_limited_gain",
     "tune",
     "velocity_gain",
+    "worst_case_force",
 ]

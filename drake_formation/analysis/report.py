@@ -111,7 +111,7 @@ def _modes(certificate: Certificate) -> Iterator[RenderableType]:
         yield Text(f"Consensus cannot move: {', '.join(fixed)}.")
     limit = certificate.modes.decay_limit
     if limit is not None:
-        delta_v = certificate.scenario.consensus.delta_v
+        delta_v = certificate.formation.delta_v
         yield Text(
             f"What it moves decays at {_number(limit)} 1/s on average whatever δ is (δ_v = {delta_v:g} N s/m): δ makes "
             "motions faster, not shorter. δ_v makes them shorter."

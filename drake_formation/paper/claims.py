@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from drake_formation.metrics import length, metrics
+from drake_formation.measuring import metrics
 from drake_formation.paper import theorems
 from drake_formation.paper.curves import phase, whole_error
 from drake_formation.paper.runs import (
@@ -20,6 +20,7 @@ from drake_formation.paper.runs import (
 from drake_formation.paper.store import Store
 from drake_formation.paper.verdicts import FAILS, HOLDS, Claim, verdict
 from drake_formation.scenario import Scenario
+from drake_formation.vectors import length
 
 KEPT = 0.01
 """A formation is kept when no robot is farther from agreement than this (m); chosen, 1 % of the side."""

@@ -6,9 +6,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from drake_formation.metrics import length, metrics
+from drake_formation.measuring import metrics
 from drake_formation.paper.runs import AGGREGATION_GAINS, GAINS, MATERIALS, TOPOLOGIES, aggregation, topology, transport
 from drake_formation.paper.store import Store
+from drake_formation.vectors import length
 from drake_formation.viz.figures import draw_formation, draw_obstacles, robot_colours, snapshot_times
 
 Array = NDArray[np.float64]

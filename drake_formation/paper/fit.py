@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from drake_formation.metrics import metrics
+from drake_formation.measuring import metrics
 from drake_formation.paper.published import published
 from drake_formation.paper.runs import transport
 from drake_formation.paper.store import Store
@@ -44,7 +44,7 @@ def fit(store: Store) -> Fit:
 
 def consensus_error(store: Store, gain: float) -> float:
     """Largest consensus error (m) of the line with rubber and without consensus, at an avoidance gain (N m²)."""
-    return metrics(store[tried(gain)]).consensus_error_m
+    return float(metrics(store[tried(gain)]).consensus_error_m)
 
 
 def tried(gain: float) -> Scenario:

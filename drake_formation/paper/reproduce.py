@@ -4,11 +4,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from drake_formation.config.errors import nearest
-from drake_formation.output import Written, written
 from drake_formation.paper.report import REPORT, RUNS, write_report
 from drake_formation.paper.store import Store
 from drake_formation.paper.study import PARTS
-from drake_formation.places import make_folder, reserved
+from drake_formation.places import Written, make_folder, reserved, written
 from drake_formation.scenario import Scenario
 
 Progress = Callable[[int, int], None]

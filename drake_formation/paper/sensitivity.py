@@ -5,7 +5,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from drake_formation.metrics import Metrics, metrics
+from drake_formation.measuring import Metrics, metrics
 from drake_formation.paper.runs import transport
 from drake_formation.paper.store import Store
 from drake_formation.scenario import Scenario, resolve, with_overrides

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
-from drake_formation.metrics import Metrics, metrics
+from drake_formation.measuring import Metrics, metrics
 from drake_formation.paper.published import published
 from drake_formation.paper.runs import FORMATIONS, GAINS, MATERIALS, transport, transports
 from drake_formation.paper.store import Store

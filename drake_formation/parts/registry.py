@@ -10,8 +10,9 @@ from typing import Any, TypeVar
 
 from drake_formation.parts.part import Part
 from drake_formation.parts.roles import ROLES
+from drake_formation.sources import GROUPS
 
-GROUP = "drake_formation.parts"
+GROUP, _ = GROUPS
 """Entry points of this group are parts: ``my_law = "my_package.my_law:MyLaw"``."""
 
 Class = TypeVar("Class", bound=type[Part])

@@ -53,8 +53,8 @@ def labelled_result(series: Series) -> "xr.Dataset":
         A dataset over ``time`` (every step of the integrator), ``robot`` (from 1), ``axis`` (x, y), ``spring``
         (``1-2``) and ``obstacle`` (from 1). ``deviation`` is NaN before the hand-off. A sample
         at the hand-off shows what is so from then on. Between samples the motion is the quintic with position,
-        velocity and acceleration at both ends; :func:`drake_formation.metrics` measures that. The attribute ``remark``
-        says what to know about the run, if there is anything.
+        velocity and acceleration at both ends; :func:`drake_formation.measuring.metrics` measures that. The attribute
+        ``remark`` says what to know about the run, if there is anything.
     """
     import xarray as xr  # slow to import, and not needed to build a diagram
 

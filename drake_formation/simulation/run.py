@@ -114,7 +114,7 @@ class PreparedRun:
             progress: called as the simulated time goes on.
 
         Returns:
-            The variables of the labelled result as plain arrays, which :func:`drake_formation.metrics.measure` takes.
+            The variables of the labelled result as plain arrays, which :func:`drake_formation.measuring.measure` takes.
 
         Raises:
             ScenarioError, SimulationError: as for :func:`simulate`.

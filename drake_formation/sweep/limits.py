@@ -63,8 +63,8 @@ def series_faults(trajectories: Trajectories | None, scenario: Scenario, points:
     """
     if not trajectories:
         return
-    duration = scenario.aggregation.duration + scenario.transport.duration
-    robots = resolve(scenario).robots
+    formation = resolve(scenario)
+    duration, robots = formation.end - formation.begin, formation.robots
     numbers = (duration / trajectories.every + 1) * 2 * robots * len(trajectories.variables)
     place = ("trajectories", "every")
     if numbers > MOST_SAMPLES:

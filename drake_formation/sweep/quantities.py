@@ -2,39 +2,26 @@
 
 import re
 import types
-from dataclasses import fields
 from typing import Annotated, Any, Union, get_args, get_origin
 
 from pydantic import BaseModel
 
-from drake_formation.metrics import Metrics
+from drake_formation.measuring.registry import known
 from drake_formation.scenario import Scenario
 from drake_formation.scenario.written import PartOf
 
-LONG_NAMES = {
-    "tracking_error_m": "largest tracking error",
-    "consensus_error_m": "largest consensus error",
-    "peak_force_n": "peak control force",
-    "min_clearance_m": "least distance to an obstacle",
-    "max_spring_strain": "largest spring strain",
-    "settling_time_s": "settled within 2 % after",
-}
-"""What to call each metric; :class:`drake_formation.Metrics` defines them."""
-_UNITS = {"m": "m", "n": "N", "s": "s"}
 _UNIT = re.compile(r"\((1|deg|kg|m|m/s|N|N/m|N s/m|N m²|s|1/s|Hz|rad|rad/s|V|A|W|J)\)")
 
 
 def metric_attributes(name: str) -> dict[str, str]:
     """Attributes of a metric's variable: units and long name."""
-    return {
-        "units": _UNITS.get(name.rpartition("_")[2], "1"),
-        "long_name": LONG_NAMES.get(name, name.replace("_", " ")),
-    }
+    metric = known().get(name)
+    return {"units": metric.unit, "long_name": metric.label} if metric else {}
 
 
 def metric_names() -> list[str]:
     """All metrics, in their order."""
-    return [field.name for field in fields(Metrics)]
+    return list(known())
 
 
 def field_attributes(path: str) -> dict[str, str]:

@@ -5,7 +5,7 @@ from collections import OrderedDict
 import numpy as np
 from numpy.typing import NDArray
 
-from drake_formation.metrics import measure
+from drake_formation.measuring import measure
 from drake_formation.parameters import structure
 from drake_formation.scenario import Scenario, ScenarioError, resolve
 from drake_formation.simulation import PreparedRun

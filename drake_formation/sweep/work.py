@@ -16,7 +16,7 @@ from drake_formation.lowering.errors import LoweringError
 from drake_formation.scenario import ScenarioError
 from drake_formation.scenario.source import Document
 from drake_formation.simulation import SimulationError
-from drake_formation.sources import source_hash
+from drake_formation.sources import guest_hashes, source_hash
 from drake_formation.sweep.definition import point_scenario
 from drake_formation.sweep.errors import SweepError
 from drake_formation.sweep.runner import Runner
@@ -92,9 +92,13 @@ class Report:
 
 @functools.cache
 def versions() -> dict[str, str]:
-    """Versions of all software whose numbers end up in a result; of this package, which may be worked on, the code."""
-    packages = ("drake-formation", "drake", "numpy", "scipy", "numba")
-    return {"python": python_version(), CODE: source_hash()[:16]} | {name: version(name) for name in packages}
+    """Versions of all software whose numbers end up in a result.
+
+    Of what may be worked on, this package and others that bring parts or metrics, it is the code that counts.
+    """
+    packages = {name: version(name) for name in ("drake-formation", "drake", "numpy", "scipy", "numba")}
+    guests = {f"{name} code": its[:16] for name, its in guest_hashes().items()}
+    return {"python": python_version(), CODE: source_hash()[:16]} | packages | guests
 
 
 def run_chunk(chunk: Chunk) -> Report:

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from drake_formation.metrics import length
+from drake_formation.vectors import length
 from drake_formation.viz.style import draw_each
 
 SNAPSHOTS = 7

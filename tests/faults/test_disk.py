@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 from faults.conftest import RUN, ended, files, started, sweep_file
 
-from drake_formation.metrics import metrics
+from drake_formation.measuring import metrics
 
 REPRODUCE = ("reproduce", "--only", "table1")
 ANALYZE = ("analyze", "line")

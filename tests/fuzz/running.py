@@ -142,9 +142,8 @@ def _verdict(status: int | None, text: str) -> str:
 def warm_up() -> float:
     """Import everything a command needs, and run one; gives how long the latter took (s)."""
     import drake_formation.analysis.report
-    import drake_formation.analysis_output
-    import drake_formation.cli
-    import drake_formation.output
+    import drake_formation.cli.certificate_folder
+    import drake_formation.cli.run_folder
     import drake_formation.paper.reproduce
     import drake_formation.sweep
     import drake_formation.viz.figures

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-CASES = 120
+CASES = 40
 
 
 @pytest.mark.slow

@@ -1,12 +1,14 @@
 """Another package's parts: found by their entry points, run on every engine, swept and certified."""
 
 import os
+import shutil
 import subprocess
 import sys
 import tomllib
 from pathlib import Path
 
 import pytest
+import xarray as xr
 
 EXAMPLE = Path(__file__).parents[1] / "example_parts"
 
@@ -38,6 +40,9 @@ laws = {"springs": {"law": "stiffening", "stiffness": 20.0}, "tracking": {"kind"
 certificate = certify(load_scenario("line", overrides={**laws, "consensus.delta": 10.0}))
 assert certificate.stable
 assert "sliding_mode" in str(certificate.unanswered["local"]), certificate.unanswered
+measured = metrics(simulate(load_scenario("line", overrides=short)))
+assert len(measured["mean_consensus_error_m"]) == 2
+assert 0 < max(measured.mean_consensus_error_m) < measured.consensus_error_m
 print("all good")
 """
 
@@ -66,6 +71,12 @@ def installed(tmp_path, monkeypatch):
     return info
 
 
+def announce(installed, group, entry):
+    points = installed / "entry_points.txt"
+    head = f"[drake_formation.{group}]\n"
+    points.write_text(points.read_text().replace(head, f"{head}{entry}\n"))
+
+
 def ran(*arguments):
     return subprocess.run([sys.executable, *arguments], capture_output=True, text=True, check=False)
 
@@ -84,12 +95,44 @@ def test_its_parts_are_swept_in_workers(tmp_path):
     sweep, out = str(tmp_path / "extras.yaml"), str(tmp_path / "out")
     result = ran("-m", "drake_formation", "sweep", sweep, "--out", out, "--workers", "2")
     assert result.returncode == 0, result.stderr
-    assert (tmp_path / "out" / "sweep.nc").exists()
+    with xr.open_dataset(tmp_path / "out" / "sweep.nc") as dataset:
+        metric = dataset["mean_consensus_error_m"].load()
+    assert metric.dims == ("cubic", "robot")
+    assert metric.attrs["units"] == "m"
+    assert (metric > 0).all()
+
+
+@pytest.mark.usefixtures("installed")
+def test_its_metric_is_listed_with_what_brings_it():
+    result = ran("-m", "drake_formation", "metrics")
+    assert "mean_consensus_error_m" in result.stdout
+    assert "formation-extras" in result.stdout
+
+
+def test_a_metric_that_cannot_be_used_is_told_of_and_costs_no_other(installed):
+    announce(installed, "metrics", "consensus = drake_formation.measuring.consensus_error:consensus_error")
+    result = ran("-m", "drake_formation", "metrics")
+    assert result.returncode == 0
+    assert "metric 'consensus' of formation-extras cannot be used: drake-formation has a metric" in result.stderr
+    assert "mean_consensus_error_m" in result.stdout
+
+
+def test_a_sweep_notices_that_another_packages_code_has_changed(installed, tmp_path, monkeypatch):
+    (tmp_path / "formation_extras").unlink()
+    shutil.copytree(EXAMPLE / "formation_extras", tmp_path / "formation_extras")
+    (tmp_path / "extras.yaml").write_text(SWEEP)
+    monkeypatch.chdir(tmp_path)
+    sweep = ("-m", "drake_formation", "sweep", "extras.yaml", "--out", "out", "--executor=serial")
+    assert ran(*sweep).returncode == 0
+    law = tmp_path / "formation_extras" / "stiffening.py"
+    law.write_text(law.read_text().replace("tension = stiffness", "tension = 2 * stiffness"))
+    result = ran(*sweep)
+    assert result.returncode == 2
+    assert "formation_extras code" in result.stderr
 
 
 def test_a_part_that_cannot_be_imported_is_told_of_when_it_is_asked_for(installed):
-    points = installed / "entry_points.txt"
-    points.write_text(points.read_text() + "broken = formation_extras.missing:Missing\n")
+    announce(installed, "parts", "broken = formation_extras.missing:Missing")
     assert ran("-m", "drake_formation", "validate", "line").returncode == 0
     result = ran("-m", "drake_formation", "validate", "line", "--set", "tracking.kind=broken")
     assert result.returncode == 2
@@ -97,16 +140,14 @@ def test_a_part_that_cannot_be_imported_is_told_of_when_it_is_asked_for(installe
 
 
 def test_two_parts_of_one_name_are_told_of_when_they_are_asked_for(installed):
-    points = installed / "entry_points.txt"
-    points.write_text(points.read_text() + "hookean = drake_formation.parts.springs.hookean:Hookean\n")
+    announce(installed, "parts", "hookean = drake_formation.parts.springs.hookean:Hookean")
     result = ran("-m", "drake_formation", "validate", "line", "--set", "springs.law=hookean")
     assert result.returncode == 2
     assert "spring 'hookean' is in drake-formation and in formation-extras" in result.stderr
 
 
 def test_a_role_of_many_is_no_place_for_a_broken_part_of_another(installed):
-    points = installed / "entry_points.txt"
-    points.write_text(points.read_text() + "no_part = formation_extras.stiffening:NonNegative\n")
+    announce(installed, "parts", "no_part = formation_extras.stiffening:NonNegative")
     result = ran("-m", "drake_formation", "validate", "line", "--set", "tracking.kind=no_part")
     assert result.returncode == 2
     assert "is no part" in result.stderr

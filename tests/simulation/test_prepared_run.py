@@ -7,7 +7,7 @@ from hypothesis import HealthCheck, given, settings
 from strategies import pairs_of_scenarios
 
 from drake_formation import load_scenario, metrics, simulate, with_overrides
-from drake_formation.metrics import measure
+from drake_formation.measuring import measure
 from drake_formation.simulation import PreparedRun
 from drake_formation.simulation.result import labelled_result
 

@@ -1,13 +1,13 @@
-from dataclasses import fields
-
 import pytest
 
-from drake_formation import Metrics
-from drake_formation.sweep.quantities import LONG_NAMES, field_attributes, metric_attributes, metric_names
+from drake_formation import load_scenario, metrics, simulate
+from drake_formation.sweep.quantities import field_attributes, metric_attributes, metric_names
 
 
 def test_every_metric_has_a_name_in_words():
-    assert metric_names() == list(LONG_NAMES) == [field.name for field in fields(Metrics)]
+    short = {"aggregation.duration": 0.2, "transport.duration": 0.2}
+    assert metric_names() == list(metrics(simulate(load_scenario("line", overrides=short))))
+    assert all(" " in metric_attributes(name)["long_name"] for name in metric_names())
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from drake_formation.analysis.gains.tuning import Tuned, tune, weight_of
 from drake_formation.analysis.gains.velocity_gain import VelocityGain, velocity_gain
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.analysis.linear.linearization import LinearFormation
-from drake_formation.analysis.response.peak_force import PeakForce, peak_force, require_distances
+from drake_formation.analysis.response.worst_case_force import WorstCaseForce, require_distances, worst_case_force
 
 Answer = TypeVar("Answer")
 
@@ -40,7 +40,7 @@ class DesignAdvice:
     present_error: float | None
     present_effort: float | None
     tuned: Tuned | None
-    peak: PeakForce | None
+    peak: WorstCaseForce | None
     force_limited: ForceLimited | None
     unanswered: dict[str, str]
 
@@ -110,7 +110,7 @@ def design(
                 costs=costs,
             ),
         ),
-        peak=asked("peak", lambda: peak_force(formation, hand_off_error_m=hand_off_error_m, travel_m=travel_m)),
+        peak=asked("peak", lambda: worst_case_force(formation, hand_off_error_m=hand_off_error_m, travel_m=travel_m)),
         force_limited=None
         if force_limit_n is None
         else asked(

@@ -7,11 +7,11 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from drake_formation.analysis.linear.control_gains import ForceMap, force_map
+from drake_formation.analysis.linear.control_gains import ControlGains, control_gains
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.analysis.linear.linearization import STATES, LinearFormation
 from drake_formation.analysis.linear.well_posed import require_agreement
-from drake_formation.analysis.response.peak_force import PeakForce, peak_force, require_distances
+from drake_formation.analysis.response.worst_case_force import WorstCaseForce, require_distances, worst_case_force
 
 Array = NDArray[np.float64]
 Found = TypeVar("Found")
@@ -43,7 +43,7 @@ class ForceLimited:
     force_limit_n: float
     hand_off_error_m: float
     travel_m: float
-    peak: PeakForce
+    peak: WorstCaseForce
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values with units in the keys."""
@@ -92,10 +92,10 @@ def largest_gain(
             "a hand-off error of 0 m asks no force of consensus, so no δ is the largest; give an error above 0"
         )
     delta_v = formation.delta_v if delta_v is None else delta_v
-    forces = force_map(formation)
+    forces = control_gains(formation)
 
-    def peak(delta: float) -> PeakForce:
-        return peak_force(
+    def peak(delta: float) -> WorstCaseForce:
+        return worst_case_force(
             formation,
             hand_off_error_m=hand_off_error_m,
             travel_m=travel_m,
@@ -131,7 +131,7 @@ def require_question(formation: LinearFormation, force_limit_n: float) -> None:
         raise IllPosedError(f"a force limit is above 0 N; {force_limit_n:g} N is none")
 
 
-def _ceiling(forces: ForceMap, limit: float, error: float, travel: float) -> float:
+def _ceiling(forces: ControlGains, limit: float, error: float, travel: float) -> float:
     """The δ at which the worst force at the hand-off itself is the limit (N/m); 0 where it is exceeded at δ = 0.
 
     At the hand-off robots are at rest, and the force of robot i is at least what displacements along one axis make.

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.analysis.gains.force_limited_gain import bisected, require_question
-from drake_formation.analysis.linear.control_gains import ForceMap, force_map
+from drake_formation.analysis.linear.control_gains import ControlGains, control_gains
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.analysis.linear.linearization import STATES, LinearFormation, linearize
 from drake_formation.analysis.response.peak_norm import require_stable, supremum
@@ -23,7 +23,7 @@ ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
-class OwnForce:
+class StartForce:
     """Peak forces of a scenario from its own starting positions, obstacles apart.
 
     Attributes:
@@ -31,7 +31,8 @@ class OwnForce:
         hand_off_error_m: largest distance of a robot from its slot at the hand-off (m).
         consensus_error_m: largest consensus error at the hand-off (m).
         aggregation_n: what no robot's force exceeds while the formation gathers (N); 0 without aggregation.
-        transport_n: what no robot's force exceeds from the hand-off on (N); as tight as :class:`PeakForce`'s bound.
+        transport_n: what no robot's force exceeds from the hand-off on (N); as tight as the bound of
+            :class:`WorstCaseForce`.
     """
 
     delta: float
@@ -51,13 +52,13 @@ class OwnForce:
         }
 
 
-def own_force(
+def start_force(
     scenario: Scenario,
     *,
     delta: float | None = None,
     formation: LinearFormation | None = None,
-    forces: ForceMap | None = None,
-) -> OwnForce:
+    forces: ControlGains | None = None,
+) -> StartForce:
     """The peak forces of a scenario's own run, obstacles apart, by the linear loop.
 
     Until the hand-off there are no springs and the loop is linear, so the hand-off error is exact; afterwards the
@@ -73,24 +74,25 @@ def own_force(
         ScenarioError: the scenario is wrong.
         IllPosedError: its reference is a trajectory, or its loop is unstable.
     """
-    if scenario.transport.reference.kind != "set_point":
+    own = resolve(scenario)
+    kind = own.parts["reference"][0].kind
+    if kind != "set_point":
         raise IllPosedError(
-            f"transport.reference is a {scenario.transport.reference.kind}: its force follows the motion planned; the "
+            f"transport.reference is a {kind}: its force follows the motion planned; the "
             "peak after a step is for a set_point, and simulation gives the other"
         )
     formation = formation or linearize(scenario)
     delta = formation.delta if delta is None else delta
-    outputs = (forces or force_map(formation)).at(delta, formation.delta_v)
+    outputs = (forces or control_gains(formation)).at(delta, formation.delta_v)
     gathering = _without_springs(formation)
-    centre = resolve(scenario).centre
-    start = _deviation(resolve(scenario).starts - resolve(scenario).slots - centre)
+    start = _deviation(own.starts - own.slots - own.centre)
     at_hand_off, aggregation = start, 0.0
-    if scenario.aggregation.duration > 0:
-        at_hand_off = _moved(gathering, delta, scenario.aggregation.duration) @ start
+    if own.aggregation_duration > 0:
+        at_hand_off = _moved(gathering, delta, own.aggregation_duration) @ start
         aggregation = _peak(gathering, delta, outputs, start)
     error = at_hand_off.reshape(-1, STATES)[:, :2]
-    travelling = at_hand_off + _deviation(np.tile(centre - scenario.transport.goal, (formation.robots, 1)))
-    return OwnForce(
+    travelling = at_hand_off + _deviation(np.tile(own.centre - own.goal, (formation.robots, 1)))
+    return StartForce(
         delta=delta,
         hand_off_error_m=float(np.linalg.norm(error, axis=1).max()),
         consensus_error_m=float(np.linalg.norm(error - error.mean(axis=0), axis=1).max()),
@@ -99,7 +101,7 @@ def own_force(
     )
 
 
-def own_largest_gain(scenario: Scenario, *, force_limit_n: float, aggregation: bool = False) -> OwnForce:
+def start_limited_gain(scenario: Scenario, *, force_limit_n: float, aggregation: bool = False) -> StartForce:
     """The largest δ with which a scenario's own run stays under a force, obstacles apart.
 
     The hand-off error is what the aggregation leaves, which depends on δ itself. Gains are raised from 0 by steps of
@@ -118,12 +120,12 @@ def own_largest_gain(scenario: Scenario, *, force_limit_n: float, aggregation: b
     """
     formation = linearize(scenario)
     require_question(formation, force_limit_n)
-    forces = force_map(formation)
+    forces = control_gains(formation)
 
-    def own(delta: float) -> OwnForce:
-        return own_force(scenario, delta=delta, formation=formation, forces=forces)
+    def own(delta: float) -> StartForce:
+        return start_force(scenario, delta=delta, formation=formation, forces=forces)
 
-    def force(found: OwnForce) -> float:
+    def force(found: StartForce) -> float:
         return max(found.transport_n, found.aggregation_n) if aggregation else found.transport_n
 
     without = own(0.0)

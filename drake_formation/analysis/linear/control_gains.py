@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class ForceMap:
+class ControlGains:
     """u = C x: control forces of all robots for a deviation x from the formation at rest (paper, Eq. 8).
 
     The consensus law is linear in its gains: ``C(δ, δ_v) = tracking + δ per_delta + δ_v per_delta_v``. The forces of
@@ -67,7 +67,7 @@ class AutoDiffFormation:
         return np.concatenate([port.Eval(self.context) for port in ports])
 
 
-def force_map(formation: LinearFormation) -> ForceMap:
+def control_gains(formation: LinearFormation) -> ControlGains:
     """Differentiate the control forces by the state."""
     diagram = AutoDiffFormation(formation)
     diagram.set_deviation(InitializeAutoDiff(np.zeros(4 * formation.robots)).ravel())
@@ -78,4 +78,4 @@ def force_map(formation: LinearFormation) -> ForceMap:
         return result
 
     tracking = gradient(0.0, 0.0)
-    return ForceMap(tracking, gradient(1.0, 0.0) - tracking, gradient(0.0, 1.0) - tracking)
+    return ControlGains(tracking, gradient(1.0, 0.0) - tracking, gradient(0.0, 1.0) - tracking)

@@ -113,18 +113,18 @@ class HandOff:
         """
         from scipy.linalg import expm
 
-        scenario = self.scenario
-        if scenario.transport.reference.kind != "set_point" or resolve(scenario).robots != formation.robots:
+        own = resolve(self.scenario)
+        kind = own.parts["reference"][0].kind
+        if kind != "set_point" or own.robots != formation.robots:
             raise IllPosedError(
                 "the error from the hand-off on is defined for a set point as reference and the formation's own "
-                f"number of robots; scenario {scenario.name!r} has reference {scenario.transport.reference.kind} and "
-                f"{resolve(scenario).robots} robots, the formation {formation.robots}"
+                f"number of robots; scenario {own.name!r} has reference {kind} and {own.robots} robots, the formation "
+                f"{formation.robots}"
             )
-        centre = resolve(scenario).centre
-        start = _at_rest(resolve(scenario).starts - centre - resolve(scenario).slots)
+        start = _at_rest(own.starts - own.centre - own.slots)
         gathering = formation.tracking + formation.consensus(formation.delta, formation.delta_v)
-        step = _at_rest(np.broadcast_to(centre - np.array(scenario.transport.goal), (formation.robots, 2)))
-        result: Array = expm(gathering * scenario.aggregation.duration) @ start + step
+        step = _at_rest(np.broadcast_to(own.centre - own.goal, (formation.robots, 2)))
+        result: Array = expm(gathering * own.aggregation_duration) @ start + step
         return result
 
     def __str__(self) -> str:

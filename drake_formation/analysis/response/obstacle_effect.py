@@ -11,7 +11,7 @@ from drake_formation.analysis.linear.linearization import LinearFormation
 from drake_formation.analysis.linear.norms import StateSpace
 from drake_formation.analysis.response.disturbance import force_to_error
 from drake_formation.analysis.response.impulse_peak import impulse_peaks
-from drake_formation.metrics import length
+from drake_formation.vectors import length
 
 Array = NDArray[np.float64]
 

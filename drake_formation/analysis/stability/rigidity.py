@@ -95,7 +95,7 @@ def spring_linearization(formation: LinearFormation) -> SpringLinearization:
     exact, linear = (_stiffness(scenario, law) for law in ("hookean", "linear"))
     turning = rotation(slots)
     return SpringLinearization(
-        law=scenario.springs.law,
+        law=formation.resolved.law.kind,
         springs=len(stiff),
         rank=rank,
         mechanisms=2 * formation.robots - TRANSLATIONS - 1 - rank,

@@ -19,12 +19,12 @@ MOST_RENUMBERED = 6
 """Robots up to which every renumbering is tried where they are not all alike."""
 
 
-def on_complete_graph(formation: LinearFormation) -> LinearFormation:
+def with_all_channels(formation: LinearFormation) -> LinearFormation:
     """The same formation with a channel each way between any two robots."""
     return linearize(with_overrides(formation.scenario, {"consensus.graph": "complete"}))
 
 
-def on_graph(complete: LinearFormation, graph: nx.Graph) -> LinearFormation:
+def with_channels(complete: LinearFormation, graph: nx.Graph) -> LinearFormation:
     """A formation with the channels of a graph only.
 
     Consensus is a sum over channels, each of which vanishes in agreement: a robot's own part of it is minus what it

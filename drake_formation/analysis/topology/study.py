@@ -10,7 +10,7 @@ from drake_formation.analysis.linear.linearization import LinearFormation
 from drake_formation.analysis.response.error_criteria import Measure
 from drake_formation.analysis.topology.bounds import least_error
 from drake_formation.analysis.topology.enumeration import Catalogue, catalogue
-from drake_formation.analysis.topology.reduced_graphs import on_complete_graph, on_graph
+from drake_formation.analysis.topology.reduced_graphs import with_all_channels, with_channels
 from drake_formation.analysis.topology.results import CheapestGraph, GraphPoint
 from drake_formation.analysis.topology.search import exchanged, starting_points, thinned
 from drake_formation.formation import graphs
@@ -43,7 +43,7 @@ class GraphStudy:
         if formation.robots < 2:
             raise IllPosedError("one robot has nobody to talk with: a communication graph takes at least two robots")
         self.measure = measure
-        self.complete = on_complete_graph(formation)
+        self.complete = with_all_channels(formation)
         self.least_error = least_error(self.complete, measure)
         self.tried: list[tuple[int, float]] = []
         known = catalogue(self.complete, of_every_robot=measure.of_every_robot)
@@ -73,7 +73,7 @@ class GraphStudy:
 
     def error(self, graph: nx.Graph) -> float:
         """The error of a graph (m), kept."""
-        found = self.measure.error_m(on_graph(self.complete, graph))
+        found = self.measure.error_m(with_channels(self.complete, graph))
         self.tried.append((graphs.channels(graph), found))
         return found
 

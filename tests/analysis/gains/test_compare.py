@@ -14,7 +14,7 @@ from drake_formation.analysis.gains.quadratic_cost import HandOffCost
 from drake_formation.analysis.gains.tuning import tune, weight_of
 from drake_formation.analysis.gains.velocity_gain import velocity_gain
 from drake_formation.analysis.linear.errors import IllPosedError
-from drake_formation.analysis.response.peak_force import peak_force
+from drake_formation.analysis.response.worst_case_force import worst_case_force
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +28,7 @@ def test_it_is_what_each_part_says(formation):
     assert (advice.present_error, advice.present_effort) == HandOffCost(formation, 0.02).error_and_effort(1e4, 0.0)
     tuned = tune(formation, effort_weight=weight_of(formation, 1e4), hand_off_error_m=0.02)
     assert advice.tuned.to_dict() == tuned.to_dict()
-    assert advice.peak.force_n == peak_force(formation, hand_off_error_m=0.02, travel_m=25.0).force_n
+    assert advice.peak.force_n == worst_case_force(formation, hand_off_error_m=0.02, travel_m=25.0).force_n
     limited = largest_gain(formation, force_limit_n=300.0, hand_off_error_m=0.02, travel_m=25.0)
     assert advice.force_limited.to_dict() == limited.to_dict()
     assert advice.unanswered == {}

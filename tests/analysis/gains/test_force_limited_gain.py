@@ -11,7 +11,7 @@ from drake_formation import load_scenario, simulate
 from drake_formation.analysis import linearize
 from drake_formation.analysis.gains.force_limited_gain import largest_gain
 from drake_formation.analysis.linear.errors import IllPosedError
-from drake_formation.analysis.response.peak_force import peak_force
+from drake_formation.analysis.response.worst_case_force import worst_case_force
 from drake_formation.scenario import resolve, with_overrides
 
 ALONE = {"formation": {"shape": "slots", "slots": [[0, 0]]}, "robots.start": {"centre": [2.5, 3.5]}}
@@ -36,10 +36,10 @@ def test_the_gain_fits_and_little_more_does_not(graph, delta_v):
     question = {"hand_off_error_m": 0.02, "travel_m": 25.0}
     found = largest_gain(formation, force_limit_n=500.0, **question)
     assert found.peak.bound_n <= 500
-    assert peak_force(formation, delta=found.delta, **question).bound_n == pytest.approx(found.peak.bound_n)
+    assert worst_case_force(formation, delta=found.delta, **question).bound_n == pytest.approx(found.peak.bound_n)
     for factor in (1.01, 1.05, 1.2):
-        assert peak_force(formation, delta=factor * found.delta, **question).force_n > 500
-    assert peak_force(formation, delta=1.001 * found.ceiling, **question).force_n > 500
+        assert worst_case_force(formation, delta=factor * found.delta, **question).force_n > 500
+    assert worst_case_force(formation, delta=1.001 * found.ceiling, **question).force_n > 500
 
 
 @pytest.mark.parametrize("graph", ["complete", "path"])

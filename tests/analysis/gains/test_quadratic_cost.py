@@ -11,7 +11,7 @@ from strategies import scenarios
 from drake_formation import load_scenario, simulate
 from drake_formation.analysis import linearize
 from drake_formation.analysis.gains.quadratic_cost import HandOffCost
-from drake_formation.analysis.linear.control_gains import AutoDiffFormation, force_map
+from drake_formation.analysis.linear.control_gains import AutoDiffFormation, control_gains
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.scenario import resolve, with_overrides
 
@@ -42,7 +42,7 @@ def test_the_gradient_is_that_of_finite_differences(scenario, weight):
 @settings(max_examples=10, deadline=None)
 def test_derivatives_by_the_gains_hold_for_all_gains(scenario):
     formation = linearize(scenario)
-    forces = force_map(formation)
+    forces = control_gains(formation)
     sensitivities = HandOffCost(formation).sensitivities
     np.testing.assert_allclose(sensitivities[0], forces.per_delta, atol=1e-9)
     np.testing.assert_allclose(sensitivities[1], forces.per_delta_v, atol=1e-9)

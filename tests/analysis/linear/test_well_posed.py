@@ -7,19 +7,19 @@ from drake_formation.analysis import linearize
 from drake_formation.analysis.gains.distributed_lqr import distributed_lqr
 from drake_formation.analysis.gains.force_limited_gain import largest_gain
 from drake_formation.analysis.gains.quadratic_cost import HandOffCost
-from drake_formation.analysis.gains.start_limited_gain import own_largest_gain
+from drake_formation.analysis.gains.start_limited_gain import start_limited_gain
 from drake_formation.analysis.gains.tuning import tune
 from drake_formation.analysis.gains.velocity_gain import velocity_gain
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.analysis.linear.well_posed import require_agreement
-from drake_formation.analysis.response.peak_force import peak_force
+from drake_formation.analysis.response.worst_case_force import worst_case_force
 
 WAYS = {
     "velocity_gain": lambda formation: velocity_gain(formation, damping_ratio=0.7),
     "distributed_lqr": distributed_lqr,
     "tune": lambda formation: tune(formation, effort_weight=1e-4),
     "largest_gain": lambda formation: largest_gain(formation, force_limit_n=100.0, hand_off_error_m=0.01),
-    "own_largest_gain": lambda formation: own_largest_gain(formation.scenario, force_limit_n=100.0),
+    "start_limited_gain": lambda formation: start_limited_gain(formation.scenario, force_limit_n=100.0),
 }
 ALONE = {"formation": {"shape": "slots", "slots": [[0, 0]]}, "robots.start": {"centre": [2.5, 3.5]}}
 
@@ -50,7 +50,8 @@ def test_connected_robots_may_ask(name):
 def test_what_needs_no_agreement_is_answered(pairs):
     silent = linearize(load_scenario("quadrilateral", overrides={"consensus.graph": []}))
     for formation in (pairs, silent):
-        assert peak_force(formation, hand_off_error_m=0.04, travel_m=25.0).force_n == pytest.approx(25.04, abs=0.1)
+        worst = worst_case_force(formation, hand_off_error_m=0.04, travel_m=25.0)
+        assert worst.force_n == pytest.approx(25.04, abs=0.1)
     apart, alone = (HandOffCost(formation).error_and_effort(0.0, 0.0) for formation in (pairs, silent))
     assert apart == pytest.approx(alone)
     assert HandOffCost(silent).error_and_effort(1e4, 10.0) == pytest.approx(alone)

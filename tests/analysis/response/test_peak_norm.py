@@ -9,15 +9,15 @@ from strategies import generators, scenarios
 
 from drake_formation import load_scenario
 from drake_formation.analysis import linearize
-from drake_formation.analysis.linear.control_gains import force_map
+from drake_formation.analysis.linear.control_gains import control_gains
 from drake_formation.analysis.linear.errors import IllPosedError
-from drake_formation.analysis.response.peak_force import displacements
 from drake_formation.analysis.response.peak_norm import energy, require_stable, supremum
+from drake_formation.analysis.response.worst_case_force import displacements
 from drake_formation.scenario import resolve
 
 
 def worst(formation, radii, **options):
-    outputs = force_map(formation).at(formation.delta, formation.delta_v)
+    outputs = control_gains(formation).at(formation.delta, formation.delta_v)
     start = displacements(formation.robots)
     return supremum(formation, formation.delta, formation.delta_v, outputs, start, radii, **options), outputs, start
 

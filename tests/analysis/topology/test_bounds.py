@@ -11,7 +11,7 @@ from drake_formation.analysis import linearize
 from drake_formation.analysis.response.error_criteria import ForceNoise, Pulse, Vibration
 from drake_formation.analysis.topology.bounds import SLACK, least_error, relative_modes
 from drake_formation.analysis.topology.enumeration import connected_graphs
-from drake_formation.analysis.topology.reduced_graphs import on_complete_graph, on_graph
+from drake_formation.analysis.topology.reduced_graphs import with_all_channels, with_channels
 from drake_formation.formation import graphs
 
 LIKE = {
@@ -30,7 +30,7 @@ LIKE = {
 
 
 def complete_of(overrides, name="quadrilateral"):
-    return on_complete_graph(linearize(load_scenario(name, overrides=overrides)))
+    return with_all_channels(linearize(load_scenario(name, overrides=overrides)))
 
 
 @pytest.mark.parametrize("measure", [Pulse(2.0), ForceNoise(0.5)])
@@ -39,7 +39,7 @@ def test_no_graph_beats_the_bound(kind, measure):
     complete = complete_of(LIKE[kind])
     bound = least_error(complete, measure)
     for edges, candidates in connected_graphs(4, [tuple(range(4))]).items():
-        errors = [measure.error_m(on_graph(complete, graph)) for graph in candidates]
+        errors = [measure.error_m(with_channels(complete, graph)) for graph in candidates]
         assert 0 < bound(edges) <= min(errors)
         # Where robots are held unlike, the bound must allow for the one held firmest.
         assert bound(edges) >= (0.4 if kind == "springs of all kinds" else 0.7) * min(errors)
@@ -60,7 +60,7 @@ def test_no_random_graph_of_more_robots_beats_it(rng, robots):
     for _ in range(5):
         graph = _random_graph(rng, robots)
         for measure, bound in bounds:
-            assert bound(graph.number_of_edges()) <= measure.error_m(on_graph(complete, graph))
+            assert bound(graph.number_of_edges()) <= measure.error_m(with_channels(complete, graph))
 
 
 def _random_graph(rng, robots):
@@ -100,7 +100,7 @@ def test_modes_are_those_of_the_loop():
     """On a cycle of four the relative modes are λ = 2, 2, 4."""
     complete = complete_of(LIKE["linear and damped"])
     modes = relative_modes(complete)
-    loop = np.linalg.eigvals(on_graph(complete, graphs.graph("cycle", 4)).A)
+    loop = np.linalg.eigvals(with_channels(complete, graphs.graph("cycle", 4)).A)
     for eigenvalue in (2.0, 4.0):
         for value in np.linalg.eigvals(modes.fixed + eigenvalue * modes.varied):
             assert np.abs(loop - value).min() < 1e-6

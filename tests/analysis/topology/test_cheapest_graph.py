@@ -20,7 +20,7 @@ from drake_formation.analysis.topology.cheapest_graph import (
     pareto_front,
 )
 from drake_formation.analysis.topology.enumeration import connected_graphs
-from drake_formation.analysis.topology.reduced_graphs import on_complete_graph, on_graph
+from drake_formation.analysis.topology.reduced_graphs import with_all_channels, with_channels
 from drake_formation.paper.runs import TOPOLOGIES, topology
 from drake_formation.scenario import resolve, with_overrides
 
@@ -80,11 +80,11 @@ def test_unequal_robots_are_told_apart():
     """The light robot may take any place in the graph: of the 38 numbered graphs 11 differ, more than the 6 shapes."""
     formation = formation_of(robots__mass=[40.0, 40.0, 40.0, 5.0], springs__law="linear")
     front = pareto_front(formation, measure=ForceNoise())
-    complete = on_complete_graph(formation)
+    complete = with_all_channels(formation)
     everything = connected_graphs(4, [tuple(range(4))])
     assert len(front.tried) == 11
     for point, candidates in zip(front.points, everything.values(), strict=True):
-        least = min(ForceNoise().error_m(on_graph(complete, graph)) for graph in candidates)
+        least = min(ForceNoise().error_m(with_channels(complete, graph)) for graph in candidates)
         assert point.error_m == pytest.approx(least, rel=1e-9)
     # The light robot is moved most, so it is the one that everybody talks with.
     assert all(4 in edge for edge in front.points[0].edges)

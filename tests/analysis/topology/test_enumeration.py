@@ -6,7 +6,7 @@ import pytest
 from drake_formation import load_scenario
 from drake_formation.analysis import linearize
 from drake_formation.analysis.topology.enumeration import catalogue, connected_graphs, connected_shapes
-from drake_formation.analysis.topology.reduced_graphs import on_complete_graph, renumberings
+from drake_formation.analysis.topology.reduced_graphs import renumberings, with_all_channels
 
 SHAPES = {2: 1, 3: 2, 4: 6, 5: 21, 6: 112, 7: 853}
 """Connected graphs up to isomorphism (OEIS A001349)."""
@@ -21,7 +21,7 @@ def sizes(found):
 
 def complete(name, **overrides):
     named = {path.replace("__", "."): value for path, value in overrides.items()}
-    return on_complete_graph(linearize(load_scenario(name, overrides=named)))
+    return with_all_channels(linearize(load_scenario(name, overrides=named)))
 
 
 @pytest.mark.parametrize(("robots", "count"), SHAPES.items())

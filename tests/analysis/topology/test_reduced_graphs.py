@@ -12,7 +12,12 @@ from strategies import scenarios
 from drake_formation import load_scenario
 from drake_formation.analysis import linearize
 from drake_formation.analysis.response.error_criteria import ForceNoise
-from drake_formation.analysis.topology.reduced_graphs import interchangeable, on_complete_graph, on_graph, renumberings
+from drake_formation.analysis.topology.reduced_graphs import (
+    interchangeable,
+    renumberings,
+    with_all_channels,
+    with_channels,
+)
 from drake_formation.formation import graphs
 from drake_formation.scenario import resolve
 
@@ -21,14 +26,14 @@ ALIKE = {"springs.law": "linear", "consensus.delta": 50.0, "consensus.delta_v": 
 
 def complete_of(name, **overrides):
     named = {path.replace("__", "."): value for path, value in overrides.items()}
-    return on_complete_graph(linearize(load_scenario(name, overrides=named)))
+    return with_all_channels(linearize(load_scenario(name, overrides=named)))
 
 
 @given(scenario=scenarios(robots=st.integers(2, 5)))
 @settings(max_examples=15)
 def test_picked_channels_are_the_diagram_linearized_anew(scenario):
     formation = linearize(scenario)
-    picked = on_graph(on_complete_graph(formation), resolve(scenario).channels.graph)
+    picked = with_channels(with_all_channels(formation), resolve(scenario).channels.graph)
     np.testing.assert_allclose(picked.A, formation.A, rtol=1e-9, atol=1e-9 * np.abs(formation.A).max())
     np.testing.assert_array_equal(picked.B, formation.B)
     np.testing.assert_array_equal(picked.laplacian, formation.laplacian)
@@ -83,7 +88,7 @@ def test_a_symmetry_leaves_the_error_of_every_graph(overrides):
     complete = complete_of("quadrilateral", springs__stiffness=300.0, consensus__delta=100.0, **overrides)
     group = renumberings(complete)
     path = nx.path_graph(4)
-    errors = {way: ForceNoise().error_m(on_graph(complete, nx.relabel_nodes(path, dict(enumerate(way)))))
+    errors = {way: ForceNoise().error_m(with_channels(complete, nx.relabel_nodes(path, dict(enumerate(way)))))
               for way in permutations(range(4))}  # fmt: skip
     for way in group:
         assert errors[way] == pytest.approx(errors[tuple(range(4))], rel=1e-9)
@@ -94,7 +99,7 @@ def test_interchangeable_robots_err_alike_on_every_copy_of_a_graph():
     complete = complete_of("quadrilateral", **{key.replace(".", "__"): value for key, value in ALIKE.items()})
     star = graphs.graph("star", 4)
     errors = [
-        ForceNoise().error_m(on_graph(complete, nx.relabel_nodes(star, dict(enumerate(way)))))
+        ForceNoise().error_m(with_channels(complete, nx.relabel_nodes(star, dict(enumerate(way)))))
         for way in permutations(range(4))
     ]
     np.testing.assert_allclose(errors, errors[0], rtol=1e-9)

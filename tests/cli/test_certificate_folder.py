@@ -4,10 +4,11 @@ import json
 
 import pytest
 
-from drake_formation import analysis_output, load_scenario
+from drake_formation import load_scenario
 from drake_formation.analysis import Questions, certify
-from drake_formation.analysis_output import CERTIFICATE, CERTIFICATE_FILE, FIGURES, write_certificate
-from drake_formation.output import RUN
+from drake_formation.cli import certificate_folder
+from drake_formation.cli.certificate_folder import CERTIFICATE, CERTIFICATE_FILE, FIGURES, write_certificate
+from drake_formation.cli.run_folder import RUN
 from drake_formation.places import OutputError, reserved
 
 
@@ -35,7 +36,7 @@ def test_what_fails_on_the_way_leaves_the_earlier_certificate(certificate, tmp_p
     def fails(_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(analysis_output, "FIGURES", {"mode_map": fails})
+    monkeypatch.setattr(certificate_folder, "FIGURES", {"mode_map": fails})
     with pytest.raises(KeyboardInterrupt):
         write(tmp_path / "line", certify(load_scenario("quadrilateral")))
     assert json.loads((tmp_path / "line" / "certificate.json").read_text())["name"] == "line"
@@ -69,7 +70,7 @@ def test_robots_that_do_not_talk_have_no_delay_to_draw(tmp_path):
 
 
 def test_channels_of_many_robots_are_drawn_where_asked(certificate, tmp_path, monkeypatch):
-    monkeypatch.setattr(analysis_output, "FEW_ROBOTS", 1)
+    monkeypatch.setattr(certificate_folder, "FEW_ROBOTS", 1)
     assert set(write(tmp_path / "unasked", certificate)) == {"error_against_channels"}
     asked = certify(certificate.scenario, questions=Questions(consensus_error=1.0))
     assert write(tmp_path / "asked", asked) == {}

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drake_formation.metrics import Metrics, metrics
+from drake_formation.measuring import metrics
+from drake_formation.measuring.metric import Metrics, Value
 from drake_formation.scenario import Scenario
 from drake_formation.simulation.extremes import Vectors, longest
 from drake_formation.simulation.motion import Motion
@@ -98,10 +99,16 @@ def position_difference(first: Series, second: Series) -> float:
     return max(largest)
 
 
-def differences(ours: Metrics, theirs: Metrics) -> dict[str, float | list[float] | None]:
+def differences(ours: Metrics, theirs: Metrics) -> dict[str, Value]:
     """By how much each metric differs; None where one is None."""
-    pairs = {name: (value, theirs.to_dict()[name]) for name, value in ours.to_dict().items()}
-    return {name: None if None in pair else np.abs(np.subtract(*pair)).tolist() for name, pair in pairs.items()}
+    return {name: _apart(value, theirs[name]) for name, value in ours.items()}
+
+
+def _apart(first: Value, second: Value) -> Value:
+    if first is None or second is None:
+        return None
+    distance: Value = np.abs(np.subtract(first, second)).tolist()
+    return distance
 
 
 def _motion(series: Series, phase: int) -> Motion:

@@ -1,46 +1,24 @@
 """The folder that a run leaves behind."""
 
 import json
-from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 import xarray as xr
 
 from drake_formation.diagram import build_diagram
-from drake_formation.metrics import Metrics
-from drake_formation.places import Kind, Place
+from drake_formation.measuring import Metrics
+from drake_formation.measuring.check import Check
+from drake_formation.places import PICTURES, Kind, Place, Written, written
 from drake_formation.scenario import Scenario, to_yaml
-from drake_formation.simulation.check import Check
 from drake_formation.viz.graphviz import write_diagram
 from drake_formation.viz.style import attempt_each
 
 RESULT, SCENARIO, METRICS, FAILURE = "result.nc", "scenario.yaml", "metrics.json", "failure.txt"
-PICTURES, DIAGRAMS = "figures", ("diagram.dot", "diagram.svg")
+DIAGRAMS = ("diagram.dot", "diagram.svg")
 
 RUN = Kind(RESULT, (METRICS, SCENARIO, PICTURES, *DIAGRAMS, RESULT))
 FAILED_RUN = Kind(FAILURE, (SCENARIO, RESULT, PICTURES, FAILURE))
-
-
-@dataclass(frozen=True)
-class Written:
-    """What was written.
-
-    Attributes:
-        folder: where.
-        failed: pictures that are missing, by name, and why.
-        notes: why it is somewhere else than asked for, if it is.
-    """
-
-    folder: Path
-    failed: dict[str, str]
-    notes: list[str]
-
-    def remarks(self) -> list[str]:
-        """What the user should know, line by line."""
-        pictures = [f"No figure {name}: {reason.removesuffix('.')}." for name, reason in self.failed.items()]
-        return [*pictures, *self.notes]
 
 
 def write_run(place: Place, scenario: Scenario, result: xr.Dataset, figures: Metrics) -> Written:
@@ -88,19 +66,6 @@ def write_failed_run(place: Place, scenario: Scenario, partial_result: xr.Datase
         return _draw_figures(folder, partial_result)
 
     return written(place, write, lambda: place.take_beside(".failed", FAILED_RUN))
-
-
-def written(place: Place, write: Callable[[Path], dict[str, str]], take: Callable[[], Path] | None = None) -> Written:
-    """Fill a place and take it.
-
-    Args:
-        place: where.
-        write: writes the files to a folder; gives the pictures that failed, and why.
-        take: takes the place, if not as usual.
-    """
-    failed = place.fill(write)
-    folder = (take or place.take)()
-    return Written(folder, failed, place.notes)
 
 
 def _write_recorded(folder: Path, scenario: Scenario, result: xr.Dataset) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from drake_formation.analysis.linear.control_gains import ForceMap, force_map
+from drake_formation.analysis.linear.control_gains import ControlGains, control_gains
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.analysis.linear.linearization import STATES, LinearFormation
 from drake_formation.analysis.response.peak_norm import supremum
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class PeakForce:
+class WorstCaseForce:
     """The worst case of the linear loop.
 
     Attributes:
@@ -50,16 +50,16 @@ class PeakForce:
         }
 
 
-def peak_force(
+def worst_case_force(
     formation: LinearFormation,
     *,
     hand_off_error_m: float,
     travel_m: float = 0.0,
     delta: float | None = None,
     delta_v: float | None = None,
-    forces: ForceMap | None = None,
+    forces: ControlGains | None = None,
     enough_n: float = np.inf,
-) -> PeakForce:
+) -> WorstCaseForce:
     """The largest control force of any robot from the hand-off on, springs excluded.
 
     Args:
@@ -69,7 +69,7 @@ def peak_force(
         travel_m: how far the formation is from its set point (m), in the worst direction.
         delta: consensus gain δ (N/m); the scenario's if not given.
         delta_v: velocity consensus gain δ_v (N s/m); the scenario's if not given.
-        forces: from :func:`force_map`, where it is at hand already.
+        forces: from :func:`control_gains`, where it is at hand already.
         enough_n: a force (N) that is not looked beyond; once it is exceeded the bound is infinite.
 
     Raises:
@@ -78,11 +78,11 @@ def peak_force(
     require_distances(hand_off_error_m, travel_m)
     delta = formation.delta if delta is None else delta
     delta_v = formation.delta_v if delta_v is None else delta_v
-    outputs = (forces or force_map(formation)).at(delta, delta_v)
+    outputs = (forces or control_gains(formation)).at(delta, delta_v)
     robots = formation.robots
     radii = np.append(np.full(robots, hand_off_error_m), travel_m)
     worst = supremum(formation, delta, delta_v, outputs, displacements(robots), radii, enough_n)
-    return PeakForce(worst.value, worst.bound, worst.robot + 1, worst.time, worst.weights[:-1], worst.weights[-1])
+    return WorstCaseForce(worst.value, worst.bound, worst.robot + 1, worst.time, worst.weights[:-1], worst.weights[-1])
 
 
 def require_distances(*distances: float) -> None:

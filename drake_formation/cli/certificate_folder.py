@@ -9,8 +9,8 @@ from threadpoolctl import threadpool_limits
 
 from drake_formation.analysis.certificate import Certificate
 from drake_formation.analysis.linear.errors import IllPosedError
-from drake_formation.output import PICTURES, SCENARIO, Written, written
-from drake_formation.places import Kind, Place
+from drake_formation.cli.run_folder import SCENARIO
+from drake_formation.places import PICTURES, Kind, Place, Written, written
 from drake_formation.scenario import to_yaml
 from drake_formation.viz.style import draw_each
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from drake_formation import Scenario, SimulationError, check, load_scenario, metrics, simulate, with_overrides
-from drake_formation.simulation.check import position_difference, tightened
+from drake_formation.measuring.check import position_difference, tightened
 from drake_formation.simulation.result import series_of
 
 SHORT = {"aggregation.duration": 1.0, "transport.duration": 3.0}
@@ -101,7 +101,7 @@ def test_a_check_that_fails_leaves_the_run(cli, monkeypatch):
     def fail(scenario, result, progress):
         raise SimulationError("the second run stopped", 1.0, 1, result)
 
-    monkeypatch.setattr(sys.modules["drake_formation.simulation.check"], "check", fail)
+    monkeypatch.setattr(sys.modules["drake_formation.measuring.check"], "check", fail)
     status, _, err = cli("run", "line", *ARGUMENTS, "--check", "--out", "o")
     assert status == 3
     assert "its check is not: the second run stopped" in err

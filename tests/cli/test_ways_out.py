@@ -116,10 +116,15 @@ def test_a_signal_ends_a_command_in_good_order(tmp_path, name, kind, delay):
     process = subprocess.Popen(
         [sys.executable, "-m", "drake_formation", *COMMANDS[name]],
         cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, process_group=0,
+        preexec_fn=lambda: signal.signal(kind, signal.SIG_DFL),  # noqa: PLW1509 (else as what started the tests has it)
     )  # fmt: skip
     time.sleep(delay)
     os.killpg(process.pid, kind)  # as a terminal does
-    out, err = process.communicate(timeout=60)
+    try:
+        out, err = process.communicate(timeout=60)
+    finally:
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
     assert process.returncode == 128 + kind
     assert "Traceback" not in out + err
     assert err.strip().startswith(("interrupted", "terminated"))

@@ -8,8 +8,10 @@ import pytest
 import xarray as xr
 
 from drake_formation import load_scenario, simulate
-from drake_formation.metrics import Metrics, length, measure, metrics
+from drake_formation.measuring import Metrics, measure, metric, metrics, register, registry
+from drake_formation.measuring.registry import MetricError
 from drake_formation.simulation import PreparedRun
+from drake_formation.vectors import length
 
 SHORT = {"aggregation.duration": 5.0, "transport.duration": 15.0}
 STEEL = {"aggregation.duration": 5.0, "transport.duration": 4.0, "springs.stiffness": 3e4}
@@ -175,3 +177,54 @@ def test_length_keeps_units():
     vector = xr.DataArray([[3.0, 4.0]], dims=("time", "axis"), attrs={"units": "m"})
     assert length(vector).values.tolist() == [5.0]
     assert length(vector).attrs == {"units": "m"}
+
+
+@pytest.fixture
+def own_registry(monkeypatch):
+    monkeypatch.setattr(registry, "_metrics", registry.known())
+
+
+def last(law, **settings):
+    return register(metric("last_x_m", label="where x ends", unit="m", **settings)(law))
+
+
+QUICK_RUN = {"aggregation.duration": 0.5, "transport.duration": 0.5}
+
+
+@pytest.mark.usefixtures("own_registry")
+def test_a_session_may_bring_its_own_and_replace_it():
+    result = simulate(load_scenario("line", overrides=QUICK_RUN))
+    last(lambda transport: transport["position"][-1, :, 0], each=True)
+    assert metrics(result).last_x_m == result["position"].values[-1, :, 0].tolist()
+    last(lambda transport: transport["position"][-1, 0, 0])
+    assert metrics(result).last_x_m == float(result["position"].values[-1, 0, 0])
+
+
+@pytest.mark.usefixtures("own_registry")
+@pytest.mark.parametrize(
+    ("law", "reason"),
+    [
+        (lambda transport: transport["positron"], "KeyError: 'positron'"),
+        (lambda transport: [1.0, 2.0], r"ValueError: its values have the shape \(2,\) instead of \(\)"),
+    ],
+)
+def test_a_mistake_in_another_packages_metric_costs_its_own_figure_alone(law, reason):
+    result = simulate(load_scenario("line", overrides=QUICK_RUN))
+    last(law)
+    with pytest.warns(UserWarning, match=rf"metric 'last_x_m' of this session cannot be measured: {reason}"):
+        measured = metrics(result)
+    assert measured.last_x_m is None
+    assert measured.consensus_error_m is not None
+
+
+def test_what_is_no_metric_or_has_a_name_that_is_taken_is_refused():
+    with pytest.raises(MetricError, match="'law' of this session is no metric"):
+
+        @register
+        def law(_transport):
+            return 1.0
+
+    with pytest.raises(MetricError, match="drake-formation has a metric 'peak_force_n'; give yours another name"):
+        register(metric("peak_force_n", label="mine", unit="N")(lambda transport: 0.0))
+    with pytest.raises(AttributeError, match="there is no metric 'speed'"):
+        Metrics(peak_force_n=1.0).speed  # noqa: B018

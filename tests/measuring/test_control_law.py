@@ -5,8 +5,8 @@ from probe import context_at, robot_outputs
 from strategies import generators, random_state, scenarios
 
 from drake_formation import build_diagram, load_scenario, simulate, with_overrides
+from drake_formation.measuring.control_law import ControlLaw, control_law
 from drake_formation.scenario import resolve
-from drake_formation.simulation.laws import ControlLaw, control_law
 
 
 @settings(max_examples=25)

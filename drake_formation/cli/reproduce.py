@@ -1,0 +1,38 @@
+"""``drake-formation reproduce``: the paper's study, run again."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+from drake_formation.cli.app import app
+from drake_formation.cli.options import path
+from drake_formation.terminal import FAILED_RUN, WRONG_INPUT, say, stop
+
+
+@app.command()
+def reproduce(
+    only: Annotated[list[str] | None, typer.Option(metavar="NAME", help="A part, such as table3, fig7 or fit.")] = None,
+    out: Annotated[
+        Path, typer.Option(parser=path, metavar="FOLDER", help="For the report and the runs it is made of.")
+    ] = Path("out/paper"),
+) -> None:
+    """Rerun the paper's study and write a report: tables, figures and claims."""
+    from drake_formation.paper.reproduce import reproduce as run_study
+    from drake_formation.places import OutputError
+    from drake_formation.simulation import SimulationError
+    from drake_formation.sweep import SweepStoppedError
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed} / {task.total} runs"))
+    with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task("study", total=None)
+        try:
+            written = run_study(out, only or (), lambda done, total: progress.update(task, completed=done, total=total))
+        except (OutputError, ValueError) as error:
+            stop(str(error), WRONG_INPUT)
+        except (SimulationError, SweepStoppedError) as error:
+            stop(str(error), FAILED_RUN)
+    where = f"Report in {written.folder / 'report.html'}, tables in {written.folder / 'tables.csv'}."
+    say("\n".join([*written.remarks(), where]))

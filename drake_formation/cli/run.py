@@ -1,0 +1,119 @@
+"""``drake-formation run``: a scenario, from its file to its metrics, result, diagram and figures."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+from drake_formation.cli.app import app
+from drake_formation.cli.options import ENGINES_HELP, EngineName, Overrides, Source, path
+from drake_formation.scenario import Scenario, load_scenario
+from drake_formation.terminal import FAILED_RUN, WRONG_INPUT, say, stop
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from drake_formation.measuring import Metrics
+    from drake_formation.measuring.check import Check
+
+
+@app.command()
+def run(
+    scenario: Source,
+    overrides: Overrides = None,
+    out: Annotated[
+        Path | None, typer.Option(parser=path, metavar="FOLDER", help="For the results; out/NAME if not given.")
+    ] = None,
+    engine: Annotated[
+        EngineName, typer.Option(help=f"{ENGINES_HELP}; auto: blocks or compiled, whichever is done first.")
+    ] = EngineName.AUTO,
+    check: Annotated[bool, typer.Option("--check", help="Run it again, more accurately, and compare.")] = False,
+) -> None:
+    """Run a scenario and write its metrics, result, diagram and figures."""
+    from drake_formation.cli.run_folder import RUN, write_check, write_failed_run, write_run
+    from drake_formation.lowering.errors import LoweringError
+    from drake_formation.measuring import metrics
+    from drake_formation.places import PICTURES, OutputError, reserved
+    from drake_formation.simulation import SimulationError
+
+    resolved = load_scenario(scenario, overrides=overrides)
+    try:
+        with reserved(out or Path("out") / resolved.name, RUN) as place:
+            try:
+                result = _simulate_with_progress(resolved, engine)
+                figures = metrics(result)
+            except SimulationError as error:
+                kept = write_failed_run(place, resolved, error.partial, str(error))
+                recorded = f"What was recorded until then is in {kept.folder}."
+                stop("\n".join([str(error), *kept.remarks(), recorded]), FAILED_RUN)
+            written = write_run(place, resolved, result, figures)
+        checked = _check_with_progress(resolved, result) if check else None
+        if checked:
+            write_check(written.folder, checked)
+    except (OutputError, LoweringError) as error:
+        stop(str(error), WRONG_INPUT)
+    say(_summary(result, figures, checked))
+    remark = [str(result.attrs["remark"])] if "remark" in result.attrs else []
+    where = f"Results in {written.folder}, pictures in {written.folder / PICTURES}."
+    say("\n".join([*remark, *written.remarks(), where]))
+
+
+def _simulate_with_progress(scenario: Scenario, engine: EngineName) -> "xr.Dataset":
+    from drake_formation.simulation import simulate
+
+    with _progress(scenario, scenario.name) as progress:
+        return simulate(scenario, engine=engine.value, progress=progress)
+
+
+def _check_with_progress(scenario: Scenario, result: "xr.Dataset") -> "Check":
+    from drake_formation.measuring.check import check
+    from drake_formation.simulation import SimulationError
+
+    try:
+        with _progress(scenario, f"check of {scenario.name}") as progress:
+            return check(scenario, result, progress=progress)
+    except SimulationError as error:
+        stop(f"The run is complete, but its check is not: {error}", FAILED_RUN)
+
+
+@contextmanager
+def _progress(scenario: Scenario, name: str) -> Iterator[Callable[[float], None]]:
+    """A bar on standard error that goes on with the simulated time."""
+    from drake_formation.simulation import simulated_duration
+
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.completed:.1f} / {task.total:.0f} s simulated"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task(name, total=simulated_duration(scenario))
+        yield lambda time: progress.update(task, completed=time)
+
+
+def _summary(result: "xr.Dataset", figures: "Metrics", check: "Check | None") -> Table:
+    from drake_formation.measuring.registry import known
+
+    reason = result.attrs.get("engine_reason", "as asked for")
+    caption = escape(f"engine {result.attrs['engine']}: {reason}")
+    columns = ("metric", "value", "unit") + (("check differs by",) if check else ())
+    table = Table(*columns, title=f"{result.attrs['title']}, transport", caption=caption)
+    for name, metric in known().items():
+        label = f"{metric.label}, by robot" if metric.each else metric.label
+        table.add_row(label, _number(figures[name]), metric.unit, *([_number(check.metrics[name])] if check else []))
+    if check:
+        table.add_row("positions at any time", "", "m", _number(check.position_difference_m))
+    return table
+
+
+def _number(value: float | list[float] | None) -> str:
+    if value is None:
+        return "none"
+    return ", ".join(f"{number:.4g}" for number in value) if isinstance(value, list) else f"{value:.4g}"

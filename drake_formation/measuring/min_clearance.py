@@ -1,0 +1,12 @@
+"""Least distance between a robot and an obstacle."""
+
+from drake_formation.measuring.metric import metric
+from drake_formation.measuring.transport import Transport
+from drake_formation.simulation.clearance import least_clearance
+
+
+@metric("min_clearance_m", label="least distance to an obstacle", unit="m")
+def min_clearance(transport: Transport) -> float | None:
+    """From any robot to the edge of any obstacle, at any time (m); None without obstacles."""
+    obstacles = transport.formation.obstacles
+    return least_clearance(transport.robots, transport.bulge, obstacles[:, :2], obstacles[:, 2])

@@ -1,0 +1,64 @@
+"""The transport phase of a run, as metrics look at it: between its samples too."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drake_formation.formation.formation import Formation
+from drake_formation.scenario import resolve
+from drake_formation.simulation.motion import Motion
+from drake_formation.simulation.series import Series
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Transport:
+    """A run from the hand-off to its end.
+
+    Attributes:
+        series: the whole run: arrays by the names of the labelled result's variables.
+
+    Raises:
+        ValueError: the run ends before the transport begins.
+    """
+
+    series: Series
+
+    def __post_init__(self) -> None:
+        if not self._samples.any():
+            raise ValueError("the result has no transport phase to measure")
+
+    def __getitem__(self, name: str) -> Array:
+        """A variable over time at the samples of the transport phase, in its unit; time is its first axis."""
+        return self.series[name][self._samples]
+
+    @cached_property
+    def formation(self) -> Formation:
+        """What ran."""
+        return resolve(self.series.scenario)
+
+    @cached_property
+    def robots(self) -> Motion:
+        """The robots' motion."""
+        return self._motion("position", "velocity", "acceleration")
+
+    @cached_property
+    def bulge(self) -> Array:
+        """How far each robot leaves the chord of each step at the most (m), shape (samples − 1, robots)."""
+        return self.robots.bulge()
+
+    @cached_property
+    def deviation(self) -> Motion:
+        """The motion relative to the obstacle-free response."""
+        return self._motion("deviation", "deviation_velocity", "deviation_acceleration")
+
+    @cached_property
+    def _samples(self) -> NDArray[np.bool_]:
+        samples: NDArray[np.bool_] = self.series["phase"] == 1
+        return samples
+
+    def _motion(self, *names: str) -> Motion:
+        return Motion(self["time"], *(self[name] for name in names))

@@ -147,7 +147,7 @@ def _added(
 
 def _require_ports(role: Role, part: Part, block: Any) -> None:
     """Refuse a block that the role's wiring would leave out, or that asks for what nobody gives."""
-    called = f"{part.role} {part.kind!r} of {part.distribution}"
+    called = part.called()
     outputs = [block.get_output_port(k).get_name() for k in range(block.num_output_ports())]
     for names, ports, what in ((_input_names(block), role.inputs, "input"), (outputs, role.outputs, "output")):
         for port in ports:

@@ -6,8 +6,10 @@ class LoweringError(ValueError):
 
     Attributes:
         block: path of the block in the diagram, such as ``robot_1/plant``.
+        reason: why, without the block's name.
     """
 
     def __init__(self, block: str, reason: str) -> None:
         super().__init__(f"block {block!r} cannot be compiled: {reason}")
         self.block = block
+        self.reason = reason

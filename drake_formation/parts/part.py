@@ -16,6 +16,10 @@ Numbers = tuple[Array, ...]
 """Numeric parameters of a block, in order of their indices."""
 
 
+OWN = "drake-formation"
+"""The distribution of this package's own parts."""
+
+
 class Part:
     """What the diagram knows of a box; subclasses are registered by :func:`drake_formation.parts.part`.
 
@@ -33,11 +37,16 @@ class Part:
 
     role: ClassVar[str]
     kind: ClassVar[str]
-    distribution: ClassVar[str] = "drake-formation"
+    distribution: ClassVar[str] = OWN
     Config: ClassVar[type[Section]] = Section
 
     def __init__(self, config: Any) -> None:
         self.config = config
+
+    @classmethod
+    def called(cls) -> str:
+        """Its role, kind and where it comes from, as messages name it."""
+        return f"{cls.role} {cls.kind!r} of {cls.distribution}"
 
     def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:  # noqa: ARG002
         """What is wrong with the configuration in this formation; paths begin inside the part's section.

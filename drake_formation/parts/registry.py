@@ -59,7 +59,7 @@ def register(cls: Class) -> Class:
     _require_part(cls, "this session")
     known = _parts[cls.role].get(cls.kind)
     if known and known.distribution != "this session":
-        raise PartError(f"{_called(cls)}: {known.distribution} has a part of this name; give it another kind")
+        raise PartError(f"{cls.called()}: {known.distribution} has a part of this name; give it another kind")
     cls.distribution = "this session"
     _parts[cls.role][cls.kind] = cls
     _told()
@@ -145,10 +145,6 @@ def _require_part(cls: Any, distribution: str) -> None:
     if not _is_part(cls):
         name = getattr(cls, "__name__", repr(cls))
         raise PartError(f"{name!r} of {distribution} is no part: a subclass of Part with @part(role, kind=…) is one")
-
-
-def _called(cls: type[Part]) -> str:
-    return f"{cls.role} {cls.kind!r} of {cls.distribution}"
 
 
 def _told() -> None:

@@ -11,6 +11,7 @@ from drake_formation.lowering.errors import LoweringError
 from drake_formation.parameters import (
     block_parameters,
     find_block,
+    placed_parts,
     robot_name,
     structure,
     write_parameters,
@@ -103,8 +104,15 @@ class PreparedRun:
             raise ValueError(f"no engine {engine!r}; there are {', '.join((AUTO, *ENGINES))}")
         self.diagram = build_diagram(scenario)
         self.structure = structure(resolve(scenario))
-        self.choice, self._start = _chosen(scenario, self.diagram) if engine == AUTO else _asked(engine, self.diagram)
+        self.choice = choose(scenario) if engine == AUTO else Choice(engine, "")
+        try:
+            self._start = _ready(self.choice.engine, self.diagram, resolve(scenario))
+        except LoweringError as error:
+            if engine != AUTO:
+                raise
+            self.choice, self._start = Choice("blocks", str(error)), ENGINES["blocks"](self.diagram)
         self._context = self.diagram.CreateDefaultContext()
+        self._robots = resolve(scenario).robots
 
     def run(self, scenario: Scenario, *, progress: Progress | None = None) -> Series:
         """Run a scenario of the same structure.
@@ -227,28 +235,24 @@ class PreparedRun:
         """Of the robots whose state is not finite, or else of all, the one that was fastest at last; from 1."""
         last = run.recording.series("state")[-1] if len(run.recording.times) else None
         finite, speeds = [], []
-        for i in range(self.diagram.num_output_ports()):
-            path = f"{robot_name(i)}/plant"
-            if not self.diagram.HasSubsystemNamed(robot_name(i)):
-                break
-            own = find_block(self.diagram, path).GetMyContextFromRoot(run.context)
+        for i in range(self._robots):
+            own = find_block(self.diagram, f"{robot_name(i)}/plant").GetMyContextFromRoot(run.context)
             finite.append(bool(np.isfinite(own.get_continuous_state_vector().CopyToVector()).all()))
             speeds.append(0.0 if last is None else float(np.abs(last[i, 2:]).max()))
         lost = ~np.array(finite)
         return int(np.argmax(np.where(lost | ~lost.any(), speeds, -1.0))) + 1
 
 
-def _chosen(scenario: Scenario, diagram: Diagram) -> tuple[Choice, Start]:
-    """The fastest engine for a scenario, made ready; the blocks where another does not get ready."""
-    choice = choose(scenario)
+def _ready(engine: str, diagram: Diagram, formation: Formation) -> Start:
+    """An engine made ready for a formation's diagram; a block that it cannot compile is named with its part."""
     try:
-        return choice, ENGINES[choice.engine](diagram)
+        return ENGINES[engine](diagram)
     except LoweringError as error:
-        return _asked("blocks", diagram, str(error))
-
-
-def _asked(engine: str, diagram: Diagram, reason: str = "") -> tuple[Choice, Start]:
-    return Choice(engine, reason), ENGINES[engine](diagram)
+        for path, part, _ in placed_parts(formation):
+            if f"{error.block}/".startswith(f"{path}/"):
+                law = f" with {formation.law.called()}" if part.role == "robot" else ""
+                raise LoweringError(error.block, f"{error.reason} ({part.called()}{law})") from error
+        raise
 
 
 def _require_no_contact(series: Series) -> None:

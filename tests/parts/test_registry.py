@@ -1,14 +1,20 @@
 """What parts there are, and what is said of those that cannot be used."""
 
+import math
+
+import numpy as np
 import pytest
 from pydantic import Field
 from pydrake.systems.primitives import ConstantVectorSource, Gain
 
-from drake_formation import ScenarioError, build_diagram, load_scenario
+from drake_formation import ScenarioError, build_diagram, load_scenario, simulate
+from drake_formation.analysis import IllPosedError, certify
 from drake_formation.config.values import Positive, Section
+from drake_formation.lowering.errors import LoweringError
 from drake_formation.parts import Part, PartError, find, kinds, part, register, registry
 from drake_formation.parts.coordination.consensus import Consensus
 from drake_formation.parts.roles import CONTROLLERS, ROLES
+from drake_formation.parts.tracking.controller import TrackingController
 from drake_formation.scenario import json_schema
 
 
@@ -70,6 +76,35 @@ def test_a_part_may_not_take_the_name_of_an_installed_one():
 def test_what_is_no_part_is_refused(thing):
     with pytest.raises(PartError, match="is no part"):
         register(thing)
+
+
+def test_a_part_that_does_not_trace_is_named_with_what_brings_it():
+    """A law by the math module, which knows floats alone."""
+
+    def rough_force(error, acceleration, numbers):
+        return -math.sin(error[0]), -math.sin(error[1])
+
+    @register
+    @part("tracking", kind="rough")
+    class Rough(Part):
+        """Not for symbols."""
+
+        def numbers(self, formation, owner):
+            return np.zeros(1), formation.slots[owner]
+
+        def block(self, formation, owner, numbers):
+            *groups, slot = numbers
+            return TrackingController(rough_force, groups, slot)
+
+    short = {"aggregation.duration": 0.5, "transport.duration": 0.5}
+    scenario = load_scenario("line", overrides=short | {"tracking": {"kind": {2: "rough", "default": "lqr"}}})
+    with pytest.raises(
+        LoweringError, match=r"block 'robot_2/tracking' .* in symbols: .*tracking 'rough' of this session"
+    ):
+        simulate(scenario, engine="compiled")
+    assert simulate(scenario, engine="blocks")["position"].notnull().all()
+    with pytest.raises(IllPosedError, match="tracking 'rough' of this session"):
+        certify(scenario)
 
 
 def test_a_role_that_there_is_not_is_refused():

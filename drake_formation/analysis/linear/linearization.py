@@ -18,6 +18,7 @@ from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.diagram import build_diagram
 from drake_formation.formation.formation import Formation
 from drake_formation.parameters import find_block, robot_name
+from drake_formation.parts.part import OWN
 from drake_formation.scenario import Scenario, resolve, with_overrides
 from drake_formation.systems.templates import CONVERTING
 
@@ -120,8 +121,21 @@ def linearize(scenario: Scenario) -> LinearFormation:
     formation = resolve(rest)
     require_linear_consensus(formation)
     diagram = build_diagram(rest)
-    context = diagram.CreateDefaultContext()
     _require_states(diagram, formation)
+    try:
+        return _linearized(rest, diagram)
+    except Exception as error:
+        guests = {part.called() for parts in formation.parts.values() for part in parts if part.distribution != OWN}
+        if not guests:
+            raise
+        named = ", ".join(sorted(guests))
+        raise IllPosedError(
+            f"Drake cannot linearize the diagram with {named}: {type(error).__name__}: {error}"
+        ) from error
+
+
+def _linearized(rest: Scenario, diagram: Diagram) -> LinearFormation:
+    formation, context = resolve(rest), diagram.CreateDefaultContext()
     state_matrix = StateMatrix(diagram)
     phase = diagram.GetSubsystemByName("phase").GetMyMutableContextFromRoot(context)
 

@@ -29,9 +29,8 @@ def test_there_is_a_part_for_every_owner(name):
 def test_each_robot_and_edge_has_its_own_numbers():
     formation = resolve(load_scenario("quadrilateral", overrides=MASSES))
     np.testing.assert_array_equal(formation.masses, [20.0, 30.0, 30.0, 30.0])
-    stiffness = {
-        tuple(pair): k for pair, k in zip(formation.springs.pairs.tolist(), formation.field("spring", "stiffness"))
-    }
+    pairs = map(tuple, formation.springs.pairs.tolist())
+    stiffness = dict(zip(pairs, formation.field("spring", "stiffness"), strict=True))
     assert stiffness.pop((0, 2)) == 7.0
     assert set(stiffness.values()) == {5.0}
 

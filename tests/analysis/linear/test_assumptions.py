@@ -7,18 +7,18 @@ from drake_formation.analysis import IllPosedError, linearize
 from drake_formation.analysis.linear.assumptions import local_lqr, require_linear_consensus, same_lqr
 from drake_formation.scenario import resolve
 
-ONE_WAY = [{"from": 1, "to": 2}, {"from": 2, "to": 1}]
+
+def weighing(there, back):
+    two = [{"speaker": 1, "listener": 2, "weight": there}, {"speaker": 2, "listener": 1, "weight": back}]
+    return [*two, [2, 3], [3, 4]]
 
 
 @pytest.mark.parametrize(
     ("changes", "reason"),
     [
         ({"consensus.delta": [1.0, 2.0, 2.0, 2.0]}, "robots have different consensus.delta or delta_v"),
-        ({"consensus": {"delta": 1.0, "channels": [[1, 2], [2, 3], [3, 4], [4, 1]]}}, "channels go one way"),
-        (
-            {"consensus": {"delta": 1.0, "channels": [[1, 2, 0.5], [2, 1, 1.0], [2, 3], [3, 2], [3, 4], [4, 3]]}},
-            "weigh",
-        ),
+        ({"consensus.graph": [[1, 2], [2, 3], {"speaker": 3, "listener": 4}]}, "channels go one way"),
+        ({"consensus.graph": weighing(1.0, 0.5)}, "weigh differently each way"),
     ],
 )
 def test_what_it_is_not_of(changes, reason):
@@ -30,7 +30,7 @@ def test_what_it_is_not_of(changes, reason):
 
 
 def test_a_robots_own_weights_are_its_own():
-    formation = resolve(load_scenario("line", overrides={"tracking.R": [1.0, 2.0]}))
+    formation = resolve(load_scenario("line", overrides={"tracking.R": {"1": 1.0, "2": 2.0}}))
     assert [local_lqr(formation, i).config.R for i in range(2)] == [1.0, 2.0]
     with pytest.raises(IllPosedError, match=r"robots have different tracking\.Q or R"):
         same_lqr(formation)

@@ -9,7 +9,7 @@ from drake_formation.formation.formation import Formation
 from drake_formation.parameters import block_parameters, robot_name
 from drake_formation.parts.avoidance.khatib import Khatib, avoidance_force
 from drake_formation.parts.channels.ideal import IdealChannel
-from drake_formation.parts.coordination.consensus import Consensus, consensus_force
+from drake_formation.parts.coordination.consensus import Consensus
 from drake_formation.parts.part import Part
 from drake_formation.parts.references.set_point import SetPointReference
 from drake_formation.parts.references.trajectory import Motion as MovingReference
@@ -67,11 +67,8 @@ class ControlLaw:
         ]
         self._inertia = np.array([inertia[0] for _, inertia, _ in own["tracking"]])
         self._slots = formation.slots
-        listeners, speakers = formation.channels.pairs.T
         gains = np.array([group[0] for group in own["consensus"]])
-        self._delta, self._delta_v = gains[listeners].T
-        self._weights, self._listeners, self._speakers = formation.channels.weights, listeners, speakers
-        self._gathered = np.eye(formation.robots)[listeners]
+        self._delta, self._delta_v = (gain[:, None] * formation.channels.laplacian for gain in gains.T)
         self._range, self._gain = np.array([group[0] for group in own["avoidance"]]).T
         self._obstacles = formation.obstacles
         self._masked = np.array([part.config.sensing == "nearest" for part in formation.parts["avoidance"]])
@@ -103,14 +100,9 @@ class ControlLaw:
         return polynomial_motion((times - starts[piece])[..., None], rising)
 
     def _consensus(self, position: Array, velocity: Array) -> Array:
-        i, j = self._listeners, self._speakers
-        apart, drift = position[..., i, :] - position[..., j, :], velocity[..., i, :] - velocity[..., j, :]
-        wanted = self._slots[i] - self._slots[j]
-        force = consensus_force(
-            apart[..., 0], apart[..., 1], drift[..., 0], drift[..., 1],
-            self._delta, self._delta_v, wanted[:, 0], wanted[:, 1],
-        )  # fmt: skip
-        return np.stack([(self._weights * x) @ self._gathered for x in force], axis=-1)
+        """The virtual springs and dampers of all channels, by the Laplacian (paper, Eqs. 15 to 17)."""
+        force: Array = -(self._delta @ (position - self._slots)) - self._delta_v @ velocity
+        return force
 
     def _avoid(self, position: Array) -> Array:
         """The sum of what the sensed obstacles exert."""

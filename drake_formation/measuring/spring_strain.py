@@ -20,7 +20,8 @@ def max_spring_strain(transport: Transport) -> float | None:
     rest_lengths = formation.rest_lengths
 
     def lengths(position: Array) -> Array:
-        return (position[..., first, :] - position[..., second, :]) / rest_lengths[:, None]
+        apart: Array = (np.take(position, first, axis=-2) - np.take(position, second, axis=-2)) / rest_lengths[:, None]
+        return apart
 
     shares = Vectors.of_positions(transport.robots, (bulge[:, first] + bulge[:, second]) / rest_lengths, lengths)
     return float(max(longest(shares)[0] - 1, 1 - shortest(shares)[0]))

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from drake_formation.simulation.extremes import Vectors, shortest
 from drake_formation.simulation.motion import Motion
 from drake_formation.simulation.series import Series
+from drake_formation.vectors import length_of
 
 Array = NDArray[np.float64]
 
@@ -39,12 +40,23 @@ def contact(series: Series) -> tuple[float, int, int] | None:
         return float(times[sample]), robot, obstacle
     motion = Motion(times, *(series[name][carried] for name in ("position", "velocity", "acceleration")))
     bulge, centres, radii = motion.bulge(), series["obstacle_position"], series["obstacle_radius"]
+    if _is_far(motion, bulge, clearance):
+        return None
     least = least_clearance(motion, bulge, centres, radii)
     if least is None or least > 0:
         return None
     pairs = _pairs(motion, bulge, centres)
     robot, obstacle = divmod(int(shortest(pairs, np.tile(radii, clearance.shape[1]), each=True).argmin()), len(radii))
     return float(times[clearance[:, robot, obstacle].argmin()]), robot, obstacle
+
+
+def _is_far(motion: Motion, bulge: Array, clearance: Array) -> bool:
+    """Whether no robot can come to an obstacle between samples, by how long its steps are alone."""
+    if not clearance.size:
+        return True
+    nearest = clearance.min(axis=2)
+    way = length_of(np.diff(motion.position, axis=0))
+    return bool((np.minimum(nearest[:-1], nearest[1:]) - way - bulge > 0).all())
 
 
 def _pairs(robots: Motion, bulge: Array, centres: Array) -> Vectors:

@@ -141,6 +141,7 @@ class CompiledRecording:
         self._sizes = {name: lowered.diagram.GetOutputPort(ports[0]).size() for name, ports in self._ports.items()}
         self._times: list[Array] = []
         self._pieces: list[dict[str, Array]] = []
+        self._known: dict[str, Array] = {}
 
     def add(self, times: Array, states: Array, values: Array) -> None:
         """Keep samples; one at the time of the last sample replaces it (the hand-off changes forces in no time)."""
@@ -153,6 +154,7 @@ class CompiledRecording:
             self._pieces[-1] = {name: series[:-1] for name, series in self._pieces[-1].items()}
         self._times.append(times)
         self._pieces.append(piece)
+        self._known.clear()
 
     @property
     def times(self) -> Array:
@@ -166,6 +168,9 @@ class CompiledRecording:
 
     def series(self, port: str) -> Array:
         """Values of a recorded port, shape (samples, N, size)."""
-        ports, size = self._ports[port], self._sizes[port]
-        columns = [np.concatenate([np.zeros((0, size)), *(piece[name] for piece in self._pieces)]) for name in ports]
-        return np.stack(columns, axis=1)
+        if port not in self._known:
+            ports, size = self._ports[port], self._sizes[port]
+            pieces = [np.stack([piece[name] for name in ports], axis=1) for piece in self._pieces]
+            self._known[port] = np.concatenate([np.zeros((0, len(ports), size)), *pieces])
+            self._known[port].setflags(write=False)
+        return self._known[port]

@@ -17,8 +17,8 @@ Indices = NDArray[np.intp]
 Law = Callable[[Array, Array, Array], Array]
 Score = Callable[[Array, Array], Array]
 
-CUTS = 32
-"""Parts into which a stretch is cut."""
+CUTS, FEW_CUTS = 32, 4
+"""Parts into which a stretch is cut; few at first, which discard most stretches."""
 ROUNDS = 6
 """How often at most; by then a part is a millionth of its step or less."""
 FINE = 1e-6
@@ -146,21 +146,30 @@ def _extreme(vectors: Vectors, sign: float, more: Array, on_chord: Score, each: 
     reach = on_chord(vectors.samples[:-1], vectors.samples[1:]) + more + vectors.bulge
     step, vector = np.nonzero(reach > best + NEGLIGIBLE * (1 + abs(best)))
     low, high, bulge = np.zeros(len(step)), np.ones(len(step)), vectors.bulge[step, vector]
-    for _ in range(ROUNDS):
+    for cuts in (FEW_CUTS, *[CUTS] * ROUNDS):
         if not len(step):
             break
-        share = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, CUTS + 1)
+        share = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, cuts + 1)
         row, place = np.arange(len(step)), vector * each
-        values = vectors.within(step, share)[row, :, vector]
+        values = _values(vectors, step, vector, share)
         parts = on_chord(values[:, :-1], values[:, 1:]) + more[vector, None]
-        bulge = bulge / CUTS**2
-        chosen, highest = parts.argmax(axis=1), parts.max(axis=1)
-        known = np.maximum((sign * _length(values)).max(axis=1) + more[vector], highest - bulge)
+        chosen, highest, rest = parts.argmax(axis=1), parts.max(axis=1), bulge / cuts**2
+        known = np.maximum((sign * _length(values)).max(axis=1) + more[vector], highest - rest)
         np.maximum.at(best, place, known)
-        low, high = share[row, np.maximum(chosen - 1, 0)], share[row, np.minimum(chosen + 2, CUTS)]
-        kept = highest + bulge > (best + NEGLIGIBLE * (1 + abs(best)))[place]
-        step, vector, low, high, bulge = step[kept], vector[kept], low[kept], high[kept], bulge[kept] * 3**2
+        if cuts == CUTS:  # a few are too few to tell where in its step a vector is at its extreme
+            low, high = share[row, np.maximum(chosen - 1, 0)], share[row, np.minimum(chosen + 2, cuts)]
+            bulge = rest * 3**2
+        kept = highest + rest > (best + NEGLIGIBLE * (1 + abs(best)))[place]
+        step, vector, low, high, bulge = step[kept], vector[kept], low[kept], high[kept], bulge[kept]
     return best
+
+
+def _values(vectors: Vectors, step: Indices, vector: Indices, share: Array) -> Array:
+    """One vector a row within its step, shape (m, k, 2); a whole step that several rows share is looked at once."""
+    if len(step) and (share == share[0]).all():
+        looked_at, row = np.unique(step, return_inverse=True)
+        return vectors.within(looked_at, share[: len(looked_at)])[row, :, vector]
+    return vectors.within(step, share)[np.arange(len(step)), :, vector]
 
 
 def _length(vectors: Array) -> Array:
@@ -171,6 +180,6 @@ def _length(vectors: Array) -> Array:
 def _chord_distance(begin: Array, end: Array) -> Array:
     """Least length on the straight line from a vector to another."""
     way = end - begin
-    squared = np.maximum((way**2).sum(axis=-1), np.finfo(float).tiny)
-    share = np.clip(-(begin * way).sum(axis=-1) / squared, 0.0, 1.0)
-    return _length(begin + share[..., None] * way)
+    squared = np.maximum(way[..., 0] ** 2 + way[..., 1] ** 2, np.finfo(float).tiny)
+    along = begin[..., 0] * way[..., 0] + begin[..., 1] * way[..., 1]
+    return _length(begin + np.clip(-along / squared, 0.0, 1.0)[..., None] * way)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from drake_formation.scenario import Scenario, resolve
 from drake_formation.simulation.recorder import Recording
+from drake_formation.vectors import length_of
 
 Array = NDArray[np.float64]
 
@@ -53,7 +54,7 @@ def first_hit(scenario: Scenario, recording: Recording) -> Hit | None:
     """The first sample of the transport in which a robot is inside an obstacle, or None."""
     obstacles, position = resolve(scenario).obstacles, recording.series("state")[..., :2]
     with np.errstate(over="ignore"):
-        clearance = np.linalg.norm(position[:, :, None] - obstacles[:, :2], axis=-1) - obstacles[:, 2]
+        clearance = length_of(position[:, :, None] - obstacles[:, :2]) - obstacles[:, 2]
     hits = np.argwhere((clearance <= 0.0) & (recording.phases == 1)[:, None, None])
     if not len(hits):
         return None
@@ -76,8 +77,8 @@ def worst_leap(scenario: Scenario, recording: Recording) -> Leap | None:
     position = state[..., :2]
     move = steps[:, None, None] * state[..., 2:]
     with np.errstate(over="ignore"):
-        length, moved = np.linalg.norm(move, axis=-1), np.zeros(move.shape[:-1])
-        moved[:-1] = np.linalg.norm(np.diff(position, axis=0), axis=-1)  # more where the step went through an obstacle
+        length, moved = length_of(move), np.zeros(move.shape[:-1])
+        moved[:-1] = length_of(np.diff(position, axis=0))  # more where the step went through an obstacle
     transport = (recording.phases == 1)[:, None]
     worst = None
     formation = resolve(scenario)
@@ -121,7 +122,7 @@ def chattering(scenario: Scenario, clearance: Array) -> str:
 def _least_distance(offset: Array, move: Array) -> Array:
     """How near the way from an offset along a move comes to the origin (m), shape (..., N)."""
     with np.errstate(over="ignore", invalid="ignore"):  # a run that diverged may end in numbers whose squares overflow
-        squared = np.maximum((move * move).sum(axis=-1), np.finfo(float).tiny)
-        share = np.clip(-(offset * move).sum(axis=-1) / squared, 0.0, 1.0)
-        result: Array = np.linalg.norm(offset + share[..., None] * move, axis=-1)
+        squared = np.maximum(move[..., 0] ** 2 + move[..., 1] ** 2, np.finfo(float).tiny)
+        along = offset[..., 0] * move[..., 0] + offset[..., 1] * move[..., 1]
+        result: Array = length_of(offset + np.clip(-along / squared, 0.0, 1.0)[..., None] * move)
     return result

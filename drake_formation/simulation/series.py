@@ -1,6 +1,7 @@
 """What a run amounts to, as plain arrays over time, before it is labelled or measured."""
 
 from collections.abc import Mapping
+from functools import reduce
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,7 @@ from drake_formation.simulation.choice import Choice
 from drake_formation.simulation.motion import Motion
 from drake_formation.simulation.recorder import Recording
 from drake_formation.systems.consensus_error import consensus_errors
+from drake_formation.vectors import length_of
 
 Array = NDArray[np.float64]
 
@@ -51,8 +53,8 @@ def time_series(scenario: Scenario, choice: Choice, run: Recording, nominal: Rec
     with np.errstate(over="ignore", invalid="ignore"):  # a run that diverged may end in numbers whose squares overflow
         motion = recorded_motion(scenario, run)
         position = motion.position
-        lengths = np.linalg.norm(position[:, first] - position[:, second], axis=-1)
-        clearance = np.linalg.norm(position[:, :, None] - obstacles[:, :2], axis=-1) - obstacles[:, 2]
+        lengths = length_of(position[:, first] - position[:, second])
+        clearance = length_of(position[:, :, None] - obstacles[:, :2]) - obstacles[:, 2]
         deviation = _deviation(scenario, motion, run, nominal)
     arrays = {
         "time": run.times,
@@ -66,7 +68,7 @@ def time_series(scenario: Scenario, choice: Choice, run: Recording, nominal: Rec
         "deviation_acceleration": deviation.acceleration,
         "consensus_error": consensus_errors(position, slots),
         **forces,
-        "control_force": np.sum(list(forces.values()), axis=0),
+        "control_force": reduce(np.add, forces.values()),
         "spring_force": run.series("spring_force"),
         "spring_length": lengths,
         "rest_length": formation.rest_lengths,
@@ -84,7 +86,7 @@ def recorded_motion(scenario: Scenario, run: Recording) -> Motion:
     """The motion of the robots; their acceleration follows from the forces on them."""
     state = run.series("state")
     position, velocity = state[..., :2], state[..., 2:]
-    forces = np.sum([run.series(name) for name in (*FORCES, "spring_force")], axis=0)
+    forces = reduce(np.add, (run.series(name) for name in (*FORCES, "spring_force")))
     return Motion(run.times, position, velocity, forces / resolve(scenario).masses[:, None])
 
 

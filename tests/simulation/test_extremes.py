@@ -16,6 +16,7 @@ def lengths(motion):
     return np.linalg.norm(along(motion), axis=-1)
 
 
+@example(14202)
 @given(seeds)
 def test_no_vector_is_longer_at_any_time_and_one_is_as_long(seed):
     motion = random_motion(seed)

@@ -29,6 +29,9 @@ LARGEST_DELTA = 2e4
 
 COARSE, FINE = 5, 20
 """So many values of δ are always taken; between them as many as a curve needs, down to this part of its width."""
+MANY = 8
+"""With so many robots a margin takes long: fewer curves are drawn, and in larger steps."""
+FINE_OF_MANY, VELOCITY_GAINS_OF_MANY = 8, (0.0, 1000.0)
 
 STRAIGHT = 0.05
 """A curve is straight where its middle is the mean of its ends to this share, on logarithmic axes."""
@@ -54,7 +57,8 @@ def delay_margin_against_delta(
         IllPosedError: there is one robot, or the loop is unstable without delay.
     """
     if velocity_gains is None:
-        velocity_gains = sorted({*VELOCITY_GAINS, formation.delta_v})
+        usual = VELOCITY_GAINS if formation.robots < MANY else VELOCITY_GAINS_OF_MANY
+        velocity_gains = sorted({*usual, formation.delta_v})
     figure = Figure(figsize=(9, 5), layout="constrained")
     axes = figure.subplots()
     colours = [to_hex(colormaps["viridis"](shade)) for shade in np.linspace(0, 0.85, len(velocity_gains))]
@@ -83,6 +87,7 @@ def curve(formation: LinearFormation, of: Delayed, delta_v: float, low: float, h
     Every margin is exact; where it is straight on logarithmic axes few values stand for it.
     """
     found: dict[float, float] = {}
+    fine = FINE if formation.robots < MANY else FINE_OF_MANY
 
     def at(place: float) -> float:
         """Logarithm of the margin at a place from 0 (low) to 1 (high)."""
@@ -97,7 +102,7 @@ def curve(formation: LinearFormation, of: Delayed, delta_v: float, low: float, h
         ends, between = np.array([at(left), at(right)]), at(middle)
         missing = np.isnan([*ends, between])
         straight = missing.all() if missing.any() else abs(between - ends.mean()) <= STRAIGHT
-        if not straight and right - left > 1 / FINE:
+        if not straight and right - left > 1 / fine:
             pending += [(left, middle), (middle, right)]
     places = np.array(sorted(found))
     return low * (high / low) ** places, np.array([found[place] for place in places.tolist()])

@@ -50,6 +50,8 @@ class LinearFormation:
         per_delta: what consensus adds for every N/m of δ, shape (4N, 4N).
         per_delta_v: what consensus adds for every N s/m of δ_v, shape (4N, 4N).
         B: accelerations from forces on the robots (N), x and y robot after robot, shape (4N, 2N).
+        delta: the scenario's consensus gain δ (N/m).
+        delta_v: the scenario's velocity consensus gain δ_v (N s/m).
     """
 
     scenario: Scenario
@@ -58,6 +60,8 @@ class LinearFormation:
     per_delta: Array
     per_delta_v: Array
     B: Array
+    delta: float
+    delta_v: float
 
     @property
     def resolved(self) -> Formation:
@@ -68,16 +72,6 @@ class LinearFormation:
     def robots(self) -> int:
         """Number of robots N."""
         return len(self.tracking) // STATES
-
-    @property
-    def delta(self) -> float:
-        """The scenario's consensus gain δ (N/m)."""
-        return float(self.resolved.parts["coordination"][0].config.delta)
-
-    @property
-    def delta_v(self) -> float:
-        """The scenario's velocity consensus gain δ_v (N s/m)."""
-        return float(self.resolved.parts["coordination"][0].config.delta_v)
 
     @cached_property
     def A(self) -> Array:
@@ -147,6 +141,7 @@ def _linearized(rest: Scenario, diagram: Diagram) -> LinearFormation:
         phase.get_mutable_numeric_parameter(0).SetFromVector([float(object_in_place)])
         return state_matrix.at(context)
 
+    gains = formation.parts["coordination"][0].config
     springs = with_gains(0.0, 0.0, object_in_place=True)
     tracking = with_gains(0.0, 0.0)
     return LinearFormation(
@@ -156,6 +151,8 @@ def _linearized(rest: Scenario, diagram: Diagram) -> LinearFormation:
         per_delta=with_gains(1.0, 0.0) - tracking,
         per_delta_v=with_gains(0.0, 1.0) - tracking,
         B=_force_matrix(diagram, rest),
+        delta=float(gains.delta),
+        delta_v=float(gains.delta_v),
     )
 
 

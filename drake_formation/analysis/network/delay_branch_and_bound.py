@@ -16,6 +16,9 @@ Array = NDArray[np.float64]
 PROVEN = 1e-6
 """No crossing lies below the least delay found by more than this part of it."""
 
+FORESIGHT = 0.4
+"""Half a phase interval (rad) up to which what is foreseen from its middle is worth following."""
+
 NARROWEST = 1e-9
 """Half a phase interval (rad) within which a root that cannot be told from the imaginary axis is taken to touch it."""
 
@@ -39,7 +42,7 @@ def search(present: Array, delayed: Array, below: float = np.inf) -> Crossing | 
         low, high = pending.pop()
         discs = _Discs(present, delayed, low, high)
         delay, phase, value = discs.foreseen()
-        if delay < _proven(best, below):
+        if discs.half <= FORESIGHT and delay < _proven(best, below):
             best = least([best, followed(present, delayed, phase, value)])
         if discs.shortest_delay() >= _proven(best, below):
             continue

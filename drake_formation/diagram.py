@@ -177,9 +177,10 @@ def _talk(
     builder: DiagramBuilder, phase: System, robots: list[Diagram], formation: Formation, parameters: Parameters
 ) -> None:
     """Wire every channel from the robot that speaks to the one that hears, through the channel's block if any."""
+    asked = [set(_input_names(robot)) for robot in robots]
     for k, (i, j) in enumerate(formation.channels.pairs.tolist()):
         name = f"channel_{j + 1}"
-        if name not in _input_names(robots[i]):
+        if name not in asked[i]:
             continue
         state, heard = robots[j].GetOutputPort("state"), robots[i].GetInputPort(name)
         part: Part = formation.parts["channel"][k]

@@ -45,8 +45,11 @@ class Edges:
 
     def incident(self, robot: int) -> list[int]:
         """Rows of ``pairs`` of a robot's edges, in the order of its neighbours."""
-        rows = {(int(i), int(j)): row for row, (i, j) in enumerate(self.pairs)}
-        return [rows[min(robot, j), max(robot, j)] for j in self.neighbours[robot]]
+        return [self._rows[min(robot, j), max(robot, j)] for j in self.neighbours[robot]]
+
+    @cached_property
+    def _rows(self) -> dict[tuple[int, int], int]:
+        return {(i, j): row for row, (i, j) in enumerate(self.pairs.tolist())}
 
     def lengths(self, places: Array) -> Array:
         """Distance between the ends of every edge (m), shape (E,), where the robots are at places of shape (N, 2)."""

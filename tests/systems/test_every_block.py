@@ -10,7 +10,8 @@ from pydrake.symbolic import Evaluate, Expression, Variable
 from drake_formation.parts.avoidance.khatib import ObstacleAvoidance
 from drake_formation.parts.coordination.consensus import ConsensusController
 from drake_formation.parts.references.set_point import SetPoint
-from drake_formation.parts.robots.point_mass import RobotPlant
+from drake_formation.parts.robots.plant import PlanarRobot
+from drake_formation.parts.robots.point_mass import RobotPlant, dragged_mass
 from drake_formation.parts.springs.hookean import Hookean
 from drake_formation.parts.springs.linear import Linear
 from drake_formation.parts.tracking.controller import TrackingController
@@ -26,6 +27,9 @@ MAKERS = {
     "hookean plant": lambda: RobotPlant([2, 3], Hookean, [40.0], SPRINGS, [1.0, 2.0, 3.0, 4.0]),
     "linear plant": lambda: RobotPlant([2, 3], Linear, [40.0], SPRINGS, [1.0, 2.0, 3.0, 4.0]),
     "plant without springs": lambda: RobotPlant([], Hookean, [40.0], np.zeros((0, 4)), [1.0, 2.0, 3.0, 4.0]),
+    "plant with drag": lambda: PlanarRobot(
+        dragged_mass, [2, 3], Hookean, [[40.0], [5.0]], SPRINGS, [1.0, 2.0, 3.0, 4.0]
+    ),
     "tracking": lambda: TrackingController(
         lqr_force, [[[1.0, 0.1, 9.0, 0.2], [0.3, 1.0, 0.4, 9.0]], [0.0]], [0.5, -0.5]
     ),

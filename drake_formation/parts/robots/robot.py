@@ -17,7 +17,7 @@ class RobotNumbers(Section):
     mass: Positive = Field(default=40.0, description="mass m_i (kg), one for all or one a robot; published: 40")
     velocity: Velocity = Field(
         default=(0.0, 0.0),
-        description="velocity at the start where it holds the object (m/s), for all or a mapping; published: at rest",
+        description="starting velocity (m/s) of where it holds the object, for all or a mapping; published: at rest",
     )
 
 

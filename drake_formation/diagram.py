@@ -28,6 +28,9 @@ ROBOT_OUTPUTS = (
 )
 """Output ports of every robot."""
 
+ACCELERATION = "acceleration"
+"""An output port of such robots as do not move as the forces on them by their mass say."""
+
 PORT_ORDER = ("phase", "reference", "spring", "channel", "sensed")
 """Input ports of every robot, by the stem of their names, as far as its blocks have them."""
 
@@ -35,13 +38,13 @@ PORT_ORDER = ("phase", "reference", "spring", "channel", "sensed")
 def build_diagram(scenario: Scenario) -> Diagram:
     """Build the block diagram of a scenario.
 
-    Its default Context is the scenario's initial state, at rest. The hand-off is an event of the diagram that changes
+    Its default Context is the scenario's initial state. The hand-off is an event of the diagram that changes
     discrete state, which Drake's ``Linearize`` does not take: at ``aggregation.duration`` 0 there is none, and
     :func:`drake_formation.analysis.at_rest` gives a scenario that starts where its diagram can be linearized. Output
     ports, for every robot i from 1: ``robot_i_state`` (m, m/s), ``robot_i_tracking_error`` x − x_r (m, m/s),
     ``robot_i_consensus_error`` (m), and in newtons ``robot_i_tracking_force`` u_l, ``robot_i_consensus_force`` u_g,
-    ``robot_i_avoidance_force``, ``robot_i_control_force`` (the sum of the three) and ``robot_i_spring_force``; and
-    ``phase`` (0 aggregation, 1 transport).
+    ``robot_i_avoidance_force``, ``robot_i_control_force`` (the sum of the three) and ``robot_i_spring_force``; of
+    robots that are no free masses ``robot_i_acceleration`` (m/s²); and ``phase`` (0 aggregation, 1 transport).
 
     Args:
         scenario: what to build.
@@ -78,8 +81,9 @@ def wired(formation: Formation) -> Diagram:
     if any("sensed" in _input_names(robot) for robot in robots):
         _sense_nearest(builder, robots, parameters)
     for i, robot in enumerate(robots):
-        for output in ROBOT_OUTPUTS:
-            builder.ExportOutput(robot.GetOutputPort(output), f"{robot_name(i)}_{output}")
+        for output in (*ROBOT_OUTPUTS, ACCELERATION):
+            if output != ACCELERATION or robot.HasOutputPort(output):
+                builder.ExportOutput(robot.GetOutputPort(output), f"{robot_name(i)}_{output}")
     _observe_consensus(builder, robots, parameters)
     builder.ExportOutput(phase.get_output_port(), "phase")
     diagram = builder.Build()
@@ -97,7 +101,8 @@ def robot_diagram(formation: Formation, robot: int) -> Diagram:
 
     Returns:
         The robot, with the input ports that its blocks ask for, of ``phase``, ``reference``, ``spring_j``,
-        ``channel_j`` and ``sensed``, and the output ports named in ``ROBOT_OUTPUTS``.
+        ``channel_j`` and ``sensed``, and the output ports named in ``ROBOT_OUTPUTS``, and ``ACCELERATION`` where its
+        plant has it.
 
     Raises:
         PartError: a part has not the ports that its role asks for.
@@ -132,6 +137,8 @@ def robot_diagram(formation: Formation, robot: int) -> Diagram:
     builder.ExportOutput(plant.GetOutputPort("spring_force"), "spring_force")
     builder.ExportOutput(controllers[0].GetOutputPort("error"), "tracking_error")
     builder.ExportOutput(control.get_output_port(), "control_force")
+    if plant.HasOutputPort(ACCELERATION):
+        builder.ExportOutput(plant.GetOutputPort(ACCELERATION), ACCELERATION)
     return builder.Build()
 
 

@@ -91,6 +91,8 @@ SYNONYMS = {
     **dict.fromkeys(("spline", "way_points", "via_points"), "waypoints"),
     **dict.fromkeys(("hooke", "spring", "nonlinear"), "hookean"),
     **dict.fromkeys(("pointmass", "mass", "double_integrator"), "point_mass"),
+    **dict.fromkeys(("omni", "holonomic", "mecanum", "omni_wheels", "swedish"), "omnidirectional"),
+    **dict.fromkeys(("differential_drive", "diff_drive", "differential", "nonholonomic", "wheeled"), "unicycle"),
     **dict.fromkeys(("wire", "perfect", "none"), "ideal"),
     **dict.fromkeys(("square", "rectangle", "triangle", "octagon", "hexagon", "circle_shape"), "polygon"),
 }

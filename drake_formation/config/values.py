@@ -13,6 +13,9 @@ Length = Annotated[float, Field(gt=0, le=1e6)]
 Point = Annotated[tuple[Coordinate, Coordinate], Field(strict=False)]
 """Two coordinates in the world frame (m)."""
 
+Velocity = Annotated[tuple[Coordinate, Coordinate], Field(strict=False)]
+"""A velocity in the world frame (m/s), bounded as coordinates are."""
+
 Gap = Annotated[float, Field(ge=1e-3, le=1e6)]
 """A distance to keep (m). A planner takes steps in proportion to it, so it is no shorter than a millimetre."""
 

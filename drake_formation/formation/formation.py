@@ -22,7 +22,7 @@ class Formation:
     Attributes:
         name: of the scenario.
         slots: h_i (m), shape (N, 2).
-        starts: where the robots start, at rest (m), shape (N, 2).
+        starts: where the robots start (m), shape (N, 2).
         centre: where the formation gathers, the mean of the starts (m), shape (2,).
         goal: where the formation centre is carried to (m), shape (2,).
         springs: which robots the object couples, E edges.
@@ -83,6 +83,11 @@ class Formation:
     def masses(self) -> Array:
         """Mass of every robot m_i (kg), shape (N,)."""
         return np.array([part.config.mass for part in self.parts["robot"]])
+
+    @cached_property
+    def start_velocities(self) -> Array:
+        """Velocity at which every robot starts (m/s), shape (N, 2)."""
+        return np.array([getattr(part.config, "velocity", (0.0, 0.0)) for part in self.parts["robot"]], dtype=float)
 
     @cached_property
     def rest_lengths(self) -> Array:

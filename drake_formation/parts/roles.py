@@ -79,6 +79,7 @@ ROLES: dict[str, Role] = {
             (
                 Port("state", STATE, "position and velocity where it holds the object (m, m/s)", required=True),
                 Port("spring_force", 2, "what the object exerts on the robot (N)", required=True),
+                Port("acceleration", 2, "of where it holds the object, unless that is the forces by its mass (m/s²)"),
             ),
         ),
         Role("spring", ("springs",), "", "hookean", "edge", chooser="law"),

@@ -76,7 +76,7 @@ class _Given:
         for name, info in cls.Config.model_fields.items():
             if name not in type(written).model_fields or not _is_set(written, name):
                 continue
-            value, listed = getattr(written, name), takes_lists(cls, name)
+            value, listed = _hashable(getattr(written, name)), takes_lists(cls, name)
             if isinstance(value, dict) or (isinstance(value, tuple) and not listed):
                 self.differing[name] = value, listed, info.get_default(call_default_factory=True)
             else:
@@ -116,6 +116,13 @@ def path_of(scenario: Scenario, role: str, owner: int, path: Path) -> Path:
         elif isinstance(value, tuple) and not takes_lists(kinds(role)[kind], field):
             result.append(owner)
     return tuple(result)
+
+
+def _hashable(value: Any) -> Any:
+    """A value with tuples for lists, which are as they were written where kinds are mixed."""
+    if isinstance(value, dict):
+        return {key: _hashable(item) for key, item in value.items()}
+    return tuple(map(_hashable, value)) if isinstance(value, list | tuple) else value
 
 
 def _is_set(written: Any, name: str) -> bool:

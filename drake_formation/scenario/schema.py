@@ -105,7 +105,7 @@ Start = Annotated[
 class Robots(Section):
     """The plants (paper, Eq. 3)."""
 
-    start: Start = Field(description="starting positions: a list (m), {random: ...} or {centre: ...}; all at rest")
+    start: Start = Field(description="starting positions: a list (m), {random: ...} or {centre: ...}")
 
 
 class Springs(Section):

@@ -7,12 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 from pydrake.systems.framework import Context, Diagram, EventStatus
 
+from drake_formation.diagram import ACCELERATION
 from drake_formation.parameters import robot_name
 
 Array = NDArray[np.float64]
 
 RECORDED = ("state", "tracking_error", "tracking_force", "consensus_force", "avoidance_force", "spring_force")
-"""Output ports of every robot that a run records; the rest follows from them."""
+"""Output ports of every robot that a run records; the rest follows from them, and from ``ACCELERATION`` where it is."""
 
 
 class NonFiniteStateError(ArithmeticError):
@@ -33,6 +34,15 @@ class Recording(Protocol):
     def series(self, port: str) -> Array:
         """Values of one of the ports ``RECORDED``, shape (samples, N, size)."""
 
+    def accelerations(self) -> dict[int, Array]:
+        """Acceleration of each robot that has such a port (m/s²), from 0, each of shape (samples, 2)."""
+
+
+def telling(diagram: Diagram, robots: int) -> dict[int, str]:
+    """The ports ``ACCELERATION`` of a formation diagram, by robot from 0."""
+    ports = {i: f"{robot_name(i)}_{ACCELERATION}" for i in range(robots)}
+    return {i: name for i, name in ports.items() if diagram.HasOutputPort(name)}
+
 
 class Recorder:
     """A simulator monitor that keeps the recorded ports of every robot and the phase.
@@ -47,11 +57,14 @@ class Recorder:
         self._ports = {
             name: [diagram.GetOutputPort(f"{robot_name(i)}_{name}") for i in range(robots)] for name in RECORDED
         }
+        self._telling = telling(diagram, robots)
+        if self._telling:
+            self._ports[ACCELERATION] = [diagram.GetOutputPort(name) for name in self._telling.values()]
         self._phase = diagram.GetOutputPort("phase")
         self._progress = progress
         self._times: list[float] = []
         self._phases: list[float] = []
-        self._samples: dict[str, list[Array]] = {name: [] for name in RECORDED}
+        self._samples: dict[str, list[Array]] = {name: [] for name in self._ports}
 
     def __call__(self, context: Context) -> EventStatus:
         """Keep a sample; one at the time of the last sample replaces it (the hand-off changes forces in no time).
@@ -93,6 +106,10 @@ class Recorder:
         """Values of a recorded port, shape (samples, N, size)."""
         ports = self._ports[port]
         return np.reshape(self._samples[port], (len(self._times), len(ports), ports[0].size()))
+
+    def accelerations(self) -> dict[int, Array]:
+        """Acceleration of each robot that has such a port (m/s²), from 0, each of shape (samples, 2)."""
+        return {robot: self.series(ACCELERATION)[:, k] for k, robot in enumerate(self._telling)}
 
 
 def _shown(port: Any, context: Context) -> Array:

@@ -83,11 +83,14 @@ def time_series(scenario: Scenario, choice: Choice, run: Recording, nominal: Rec
 
 
 def recorded_motion(scenario: Scenario, run: Recording) -> Motion:
-    """The motion of the robots; their acceleration follows from the forces on them."""
+    """The motion of the robots; where they do not tell their acceleration, it is the forces on them by their mass."""
     state = run.series("state")
     position, velocity = state[..., :2], state[..., 2:]
     forces = reduce(np.add, (run.series(name) for name in (*FORCES, "spring_force")))
-    return Motion(run.times, position, velocity, forces / resolve(scenario).masses[:, None])
+    acceleration = forces / resolve(scenario).masses[:, None]
+    for robot, told in run.accelerations().items():
+        acceleration[:, robot] = told
+    return Motion(run.times, position, velocity, acceleration)
 
 
 def _deviation(scenario: Scenario, motion: Motion, run: Recording, nominal: Recording | None) -> Motion:

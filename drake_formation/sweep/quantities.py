@@ -10,7 +10,7 @@ from drake_formation.measuring.registry import known
 from drake_formation.scenario import Scenario
 from drake_formation.scenario.written import PartOf
 
-_UNIT = re.compile(r"\((1|deg|kg|m|m/s|N|N/m|N s/m|N m²|s|1/s|Hz|rad|rad/s|V|A|W|J)\)")
+_UNIT = re.compile(r"\((1|deg|kg|kg m²|m|m/s|N|N/m|N s/m|N m²|s|1/s|Hz|rad|rad/s|V|A|W|J)\)")
 
 
 def metric_attributes(name: str) -> dict[str, str]:

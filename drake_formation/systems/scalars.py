@@ -1,5 +1,6 @@
 """Arithmetic that floats, arrays, AutoDiffXd and Expression do not share."""
 
+import math
 from bisect import bisect_right
 from itertools import pairwise
 from typing import Any
@@ -12,7 +13,17 @@ Scalar = Any
 """float, AutoDiffXd or Expression; the laws of the blocks accept arrays of floats too."""
 
 
-def at_least(x: Scalar, bound: float) -> Scalar:
+def sin(x: Scalar) -> Scalar:
+    """Sine of an angle (rad), of any scalar or an array of floats."""
+    return math.sin(x) if isinstance(x, float) else np.sin(x) if isinstance(x, np.ndarray) else x.sin()
+
+
+def cos(x: Scalar) -> Scalar:
+    """Cosine of an angle (rad), of any scalar or an array of floats."""
+    return math.cos(x) if isinstance(x, float) else np.cos(x) if isinstance(x, np.ndarray) else x.cos()
+
+
+def at_least(x: Scalar, bound: Scalar) -> Scalar:
     """max(x, bound), of any scalar or an array of floats."""
     if isinstance(x, float):
         return x if x > bound else bound

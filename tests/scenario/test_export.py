@@ -60,6 +60,17 @@ def test_the_schema_rejects_what_loading_rejects(change):
         jsonschema.validate(read(shipped_scenarios()["line"]).data | change, json_schema())
 
 
+@pytest.mark.parametrize("kind", [None, "point_mass", "omnidirectional", "unicycle", ["unicycle", "point_mass"]])
+def test_the_schema_goes_by_the_kind_and_takes_the_default_where_there_is_none(kind):
+    data = read(shipped_scenarios()["line"]).data
+    changed = data | {"robots": data["robots"] | ({"kind": kind} if kind else {})}
+    jsonschema.validate(changed, json_schema())
+    changed["robots"]["ahead"] = 0.2
+    if kind not in ("unicycle", ["unicycle", "point_mass"]):
+        with pytest.raises(jsonschema.ValidationError):
+            jsonschema.validate(changed, json_schema())
+
+
 def test_every_field_explains_itself():
     schema = json_schema()
     sections = {"Scenario": schema, **schema["$defs"]}

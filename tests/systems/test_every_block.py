@@ -10,7 +10,10 @@ from pydrake.symbolic import Evaluate, Expression, Variable
 from drake_formation.parts.avoidance.khatib import ObstacleAvoidance
 from drake_formation.parts.coordination.consensus import ConsensusController
 from drake_formation.parts.references.set_point import SetPoint
-from drake_formation.parts.robots.point_mass import RobotPlant
+from drake_formation.parts.robots.omnidirectional import Omnidirectional
+from drake_formation.parts.robots.plant import PlanarRobot
+from drake_formation.parts.robots.point_mass import RobotPlant, dragged_mass
+from drake_formation.parts.robots.unicycle import Unicycle
 from drake_formation.parts.springs.hookean import Hookean
 from drake_formation.parts.springs.linear import Linear
 from drake_formation.parts.tracking.controller import TrackingController
@@ -22,10 +25,25 @@ from drake_formation.systems.sensing import NearestSensing
 SPRINGS = [[10.0, 2.0, 0.5, -1.0], [20.0, 3.0, 1.0, 1.0]]
 OBSTACLES = [[0.5, 0.5, 0.0], [-1.0, 0.5, 0.2], [40.0, 0.0, 0.0]]
 
+
+def plant(cls, inner_state, **fields):
+    """The plant of a robot on wheels."""
+    robot = cls(cls.Config(**fields))
+    start = [1.0, 2.0, 3.0, 4.0, *inner_state]
+    return PlanarRobot(cls.dynamics, [2, 3], Hookean, robot.own_numbers(), SPRINGS, start)
+
+
 MAKERS = {
     "hookean plant": lambda: RobotPlant([2, 3], Hookean, [40.0], SPRINGS, [1.0, 2.0, 3.0, 4.0]),
     "linear plant": lambda: RobotPlant([2, 3], Linear, [40.0], SPRINGS, [1.0, 2.0, 3.0, 4.0]),
     "plant without springs": lambda: RobotPlant([], Hookean, [40.0], np.zeros((0, 4)), [1.0, 2.0, 3.0, 4.0]),
+    "plant with drag": lambda: PlanarRobot(
+        dragged_mass, [2, 3], Hookean, [[40.0], [5.0]], SPRINGS, [1.0, 2.0, 3.0, 4.0]
+    ),
+    "omnidirectional plant": lambda: plant(Omnidirectional, [0.3, -0.1]),
+    "omnidirectional plant with limits": lambda: plant(Omnidirectional, [0.3, -0.1], wheel_force_limit=0.2),
+    "unicycle plant": lambda: plant(Unicycle, [0.7]),
+    "unicycle plant with limits": lambda: plant(Unicycle, [0.7], wheel_force_limit=0.2),
     "tracking": lambda: TrackingController(
         lqr_force, [[[1.0, 0.1, 9.0, 0.2], [0.3, 1.0, 0.4, 9.0]], [0.0]], [0.5, -0.5]
     ),

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.analysis.gains.force_limited_gain import bisected, require_question
+from drake_formation.analysis.linear.assumptions import require_start_at_rest
 from drake_formation.analysis.linear.control_gains import ControlGains, control_gains
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.analysis.linear.linearization import STATES, LinearFormation, linearize
@@ -72,7 +73,7 @@ def start_force(
 
     Raises:
         ScenarioError: the scenario is wrong.
-        IllPosedError: its reference is a trajectory, or its loop is unstable.
+        IllPosedError: its reference is a trajectory, its loop is unstable, or a robot does not start at rest.
     """
     own = resolve(scenario)
     kind = own.parts["reference"][0].kind
@@ -81,6 +82,7 @@ def start_force(
             f"transport.reference is a {kind}: its force follows the motion planned; the "
             "peak after a step is for a set_point, and simulation gives the other"
         )
+    require_start_at_rest(own)
     formation = formation or linearize(scenario)
     delta = formation.delta if delta is None else delta
     outputs = (forces or control_gains(formation)).at(delta, formation.delta_v)

@@ -1,8 +1,11 @@
 """What the analysis assumes of a formation's parts; asked for more, it answers with the reason."""
 
+import numpy as np
+
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.formation.formation import Formation
 from drake_formation.parts.coordination.consensus import Consensus
+from drake_formation.parts.robots.point_mass import PointMass
 from drake_formation.parts.tracking.lqr import Lqr
 
 
@@ -22,6 +25,29 @@ def require_linear_consensus(formation: Formation) -> None:
         raise IllPosedError("channels go one way or weigh differently each way; what is certified goes both ways alike")
     if any(part.kind != "ideal" for part in formation.parts["channel"]):
         raise IllPosedError("channels are not ideal; what is certified are wires")
+
+
+def require_free_masses(formation: Formation) -> None:
+    """Robots that move as the forces on them by their mass say.
+
+    Raises:
+        IllPosedError: a robot moves in another way.
+    """
+    for i, part in enumerate(formation.parts["robot"]):
+        if not isinstance(part, PointMass):
+            raise IllPosedError(f"robot {i + 1} is a {part.kind!r}; what is certified are robots of kind 'point_mass'")
+        if part.config.drag:
+            raise IllPosedError(f"robot {i + 1} has a drag; what is certified has none")
+
+
+def require_start_at_rest(formation: Formation) -> None:
+    """Robots that are at rest when the scenario begins.
+
+    Raises:
+        IllPosedError: a robot starts with a velocity.
+    """
+    for i in np.flatnonzero(formation.start_velocities.any(axis=1)):
+        raise IllPosedError(f"robot {i + 1} starts with a velocity; the answer is for a start at rest")
 
 
 def local_lqr(formation: Formation, robot: int) -> Lqr:

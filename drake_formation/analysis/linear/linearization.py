@@ -6,6 +6,7 @@ linearization cannot speak of is listed in ``NOT_COVERED``.
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,7 @@ from pydrake.autodiffutils import ExtractGradient, InitializeAutoDiff
 from pydrake.systems.framework import Context, Diagram
 from pydrake.systems.primitives import Linearize
 
-from drake_formation.analysis.linear.assumptions import require_linear_consensus
+from drake_formation.analysis.linear.assumptions import require_free_masses, require_linear_consensus
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.diagram import build_diagram
 from drake_formation.formation.formation import Formation
@@ -113,6 +114,7 @@ def linearize(scenario: Scenario) -> LinearFormation:
     """
     rest = at_rest(scenario)
     formation = resolve(rest)
+    require_free_masses(formation)
     require_linear_consensus(formation)
     diagram = build_diagram(rest)
     _require_states(diagram, formation)
@@ -171,16 +173,16 @@ def at_rest(scenario: Scenario) -> Scenario:
     Raises:
         ScenarioError: the scenario is wrong.
     """
-    return with_overrides(
-        scenario,
-        {
-            "aggregation.duration": 0.0,
-            "robots.start": {"centre": list(scenario.transport.goal)},
-            "transport.reference": {"kind": "set_point"},
-            "avoidance.obstacles": [],
-            "avoidance.sensing": "in_range",
-        },
-    )
+    changes: dict[str, Any] = {
+        "aggregation.duration": 0.0,
+        "robots.start": {"centre": list(scenario.transport.goal)},
+        "transport.reference": {"kind": "set_point"},
+        "avoidance.obstacles": [],
+        "avoidance.sensing": "in_range",
+    }
+    if resolve(scenario).start_velocities.any():
+        changes["robots.velocity"] = [0.0, 0.0]
+    return with_overrides(scenario, changes)
 
 
 class StateMatrix:

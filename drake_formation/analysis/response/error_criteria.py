@@ -6,6 +6,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from drake_formation.analysis.linear.assumptions import require_start_at_rest
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.analysis.linear.linearization import LinearFormation
 from drake_formation.analysis.linear.norms import StateSpace, hinf_norm
@@ -109,7 +110,8 @@ class HandOff:
         """Deviation from the goal at the hand-off, robot after robot (m, m/s), shape (4N,).
 
         Raises:
-            IllPosedError: the reference is no set point, or the scenario is of another number of robots.
+            IllPosedError: the reference is no set point, the scenario is of another number of robots, or its robots do
+                not start at rest.
         """
         from scipy.linalg import expm
 
@@ -121,6 +123,7 @@ class HandOff:
                 f"number of robots; scenario {own.name!r} has reference {kind} and {own.robots} robots, the formation "
                 f"{formation.robots}"
             )
+        require_start_at_rest(own)
         start = _at_rest(own.starts - own.centre - own.slots)
         gathering = formation.tracking + formation.consensus(formation.delta, formation.delta_v)
         step = _at_rest(np.broadcast_to(own.centre - own.goal, (formation.robots, 2)))

@@ -1,0 +1,131 @@
+"""The plant of one robot in the plane: what it holds, and by what dynamics it moves (paper, Eqs. 2-3)."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pydrake.systems.framework import BasicVector_, LeafSystem_, NumericParameterIndex
+
+from drake_formation.parts.part import SpringLaw
+from drake_formation.systems.scalars import Scalar
+from drake_formation.systems.templates import block_template, in_double
+
+Pair = tuple[Scalar, Scalar]
+Dynamics = Callable[..., tuple[Scalar, ...]]
+"""``dynamics(inner, velocity, control, spring, *numbers)``: how a robot moves.
+
+Of the robot's inner states z (a list), the velocity of the point where it holds the object (m/s), the control force and
+what the object exerts there (N), all in the world frame, and the lists of its groups of numbers: the acceleration of
+that point (m/s²), x and y, then the rate of each inner state.
+"""
+
+
+@block_template("PlanarRobot_", __name__)
+def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
+    """The plant as a template over double, AutoDiffXd and Expression; see :class:`PlanarRobot`."""
+
+    class Impl(LeafSystem_[T]):  # type: ignore[misc]
+        """A robot that holds the object at a point q, with one spring port per physically coupled neighbour.
+
+        Its state is [q; v; z]: position and velocity of that point in the world frame (m, m/s), and the inner states
+        of its dynamics, such as a heading. Input ports: ``force`` (N, size 2), ``phase`` (0 aggregation, 1 transport:
+        the springs are engaged) and, per neighbour j, ``spring_j`` (the neighbour's state, size 4). Output ports:
+        ``state`` x = [q; v], ``spring_force`` −Σ F_ij (N) and, unless it is the sum of the forces by the mass,
+        ``acceleration`` v̇ (m/s²). Parameters: the groups of the dynamics; last, for each neighbour in port order the
+        numbers of the spring law and the desired displacement h_i − h_j (m, two numbers).
+        """
+
+        def _construct(
+            self,
+            dynamics: Dynamics,
+            neighbours: Sequence[int],
+            law: type[SpringLaw],
+            numbers: Sequence[ArrayLike],
+            springs: ArrayLike,
+            initial_state: ArrayLike,
+            *,
+            acceleration: bool = True,
+            converter: Any = None,
+        ) -> None:
+            """Make the plant.
+
+            Args:
+                dynamics: see :data:`Dynamics`; the same function for all robots that one kind of code may serve.
+                neighbours: numbers of the physically coupled robots (from 1), which name the spring ports.
+                law: how a spring acts.
+                numbers: what the dynamics compute with, by group.
+                springs: numbers of the law and displacement of each spring, shape (neighbours, numbers + 2).
+                initial_state: default state [q; v; z], shape (4 + inner states,).
+                acceleration: whether to have that output port.
+                converter: for Drake's scalar conversion.
+            """
+            LeafSystem_[T].__init__(self, converter=converter)
+            self.arguments = (dynamics, neighbours, law, numbers, springs, initial_state)
+            self.acceleration = acceleration
+            self.kind = dynamics, law  # all else that it computes with is a parameter
+            self._dynamics, self._law = dynamics, law.law
+            self._groups, self._columns = range(len(numbers)), len(law.Config.model_fields) + 2
+            self._zero = T(0.0)
+            self._force = self.DeclareVectorInputPort("force", 2)
+            self._phase = self.DeclareVectorInputPort("phase", 1)
+            self._springs = [self.DeclareVectorInputPort(f"spring_{j}", 4) for j in neighbours]
+            for group in (*numbers, springs):
+                self.DeclareNumericParameter(BasicVector_[T](np.ravel(group)))
+            self.DeclareContinuousState(BasicVector_[T](initial_state), 2, 2, np.size(initial_state) - 4)
+            # The time ticket keeps the output fresh: after a rejected step Drake restores the state without
+            # telling the caches, but it always tells them the time.
+            fresh_state = {self.xc_ticket(), self.time_ticket()}
+            self.DeclareVectorOutputPort("state", 4, self._calc_state, fresh_state)
+            coupled_ports = {self.input_port_ticket(port.get_index()) for port in [self._phase, *self._springs]}
+            self.DeclareVectorOutputPort(
+                "spring_force",
+                2,
+                self._calc_spring_force,
+                fresh_state | coupled_ports | {self.numeric_parameter_ticket(NumericParameterIndex(len(numbers)))},
+            )
+            if acceleration:
+                all_read = {self.all_input_ports_ticket(), self.all_parameters_ticket()}
+                self.DeclareVectorOutputPort("acceleration", 2, self._calc_acceleration, fresh_state | all_read)
+
+        def _construct_copy(self, other: Any, converter: Any = None) -> None:
+            Impl._construct(self, *other.arguments, acceleration=other.acceleration, converter=converter)
+
+        def _calc_state(self, context: Any, output: Any) -> None:
+            output.SetFromVector(context.get_continuous_state_vector().CopyToVector()[:4])
+
+        def _calc_spring_force(self, context: Any, output: Any) -> None:
+            state = context.get_continuous_state_vector().CopyToVector().tolist()
+            output.SetFromVector(np.array(self._spring_force(context, *state[:4])))
+
+        def _calc_acceleration(self, context: Any, output: Any) -> None:
+            state = context.get_continuous_state_vector().CopyToVector().tolist()
+            output.SetFromVector(np.array(self._rates(context, state)[:2]))
+
+        def _spring_force(self, context: Any, x: Scalar, y: Scalar, vx: Scalar, vy: Scalar) -> Pair:
+            (phase,) = self._phase.Eval(context).tolist()
+            table = context.get_numeric_parameter(len(self._groups)).CopyToVector()
+            springs = table.reshape(-1, self._columns).tolist()
+            fx = fy = self._zero
+            law = self._law
+            for port, numbers in zip(self._springs, springs, strict=True):
+                nx, ny, nvx, nvy = port.Eval(context).tolist()
+                gx, gy = law(x - nx, y - ny, vx - nvx, vy - nvy, *numbers)
+                fx, fy = fx - gx, fy - gy  # -= would change an Expression in place
+            return phase * fx, phase * fy
+
+        def _rates(self, context: Any, state: list[Scalar]) -> tuple[Scalar, ...]:
+            """Of velocity and inner states."""
+            control = self._force.Eval(context).tolist()
+            spring = self._spring_force(context, *state[:4])
+            numbers = [context.get_numeric_parameter(k).CopyToVector().tolist() for k in self._groups]
+            return self._dynamics(state[4:], state[2:4], control, spring, *numbers)
+
+        def DoCalcTimeDerivatives(self, context: Any, derivatives: Any) -> None:  # noqa: N802 - Drake's name
+            state = context.get_continuous_state_vector().CopyToVector().tolist()
+            derivatives.SetFromVector(np.array([*state[2:4], *self._rates(context, state)]))
+
+    return Impl
+
+
+PlanarRobot = in_double(PlanarRobot_)

@@ -1,0 +1,67 @@
+"""What all robots in the plane have in common: a mass, a velocity at the start, and springs to their neighbours."""
+
+from typing import Any, ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from drake_formation.config.values import Positive, Section, Velocity
+from drake_formation.formation.formation import Formation
+from drake_formation.parts.part import Array, Numbers, Part
+from drake_formation.parts.robots.plant import Dynamics, PlanarRobot
+
+
+class RobotNumbers(Section):
+    """Mass and velocity at the start."""
+
+    mass: Positive = Field(default=40.0, description="mass m_i (kg), one for all or one a robot; published: 40")
+    velocity: Velocity = Field(
+        default=(0.0, 0.0),
+        description="starting velocity (m/s) of where it holds the object, for all or a mapping; published: at rest",
+    )
+
+
+class Robot(Part):
+    """A robot in the plane; its kinds say by what dynamics it moves.
+
+    Attributes:
+        dynamics: see :data:`drake_formation.parts.robots.plant.Dynamics`.
+    """
+
+    Config = RobotNumbers
+    dynamics: ClassVar[Dynamics]
+
+    def own_numbers(self) -> Numbers:
+        """What its dynamics compute with, by group."""
+        return (np.array([self.config.mass]),)
+
+    def inner_state(self) -> Array:
+        """The inner states of its dynamics at the start; none by default."""
+        return np.zeros(0)
+
+    def numbers(self, formation: Formation, owner: int) -> Numbers:
+        """Its own, and of each spring the law's numbers and the desired displacement."""
+        return *self.own_numbers(), spring_table(formation, owner)
+
+    def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:
+        """The plant."""
+        *own, springs = numbers
+        start = self.initial_state(formation, owner)
+        return PlanarRobot(self.dynamics, held_robots(formation, owner), formation.law, own, springs, start)
+
+    def initial_state(self, formation: Formation, owner: int) -> Array:
+        """At its starting position, with its starting velocity."""
+        return np.concatenate([formation.starts[owner], self.config.velocity, self.inner_state()])
+
+
+def held_robots(formation: Formation, robot: int) -> list[int]:
+    """Numbers of the robots that the object couples a robot to, from 1."""
+    return [j + 1 for j in formation.springs.neighbours[robot]]
+
+
+def spring_table(formation: Formation, robot: int) -> Array:
+    """Of each spring of a robot in port order, the numbers of the law and h_i − h_j, shape (neighbours, columns)."""
+    others = formation.springs.neighbours[robot]
+    rows = [formation.parts["spring"][edge].numbers(formation, edge)[0] for edge in formation.springs.incident(robot)]
+    numbers = np.array(rows, dtype=float).reshape(len(others), len(formation.law.Config.model_fields))
+    return np.column_stack([numbers, formation.displacements(robot, others)])

@@ -7,14 +7,17 @@ from rich.table import Table
 from drake_formation.cli.app import app
 from drake_formation.cli.options import Overrides, Source
 from drake_formation.formation import graphs
-from drake_formation.scenario import Scenario, load_scenario, resolve
+from drake_formation.scenario import Scenario, load_scenario, resolve, warnings
 from drake_formation.terminal import say
 
 
 @app.command()
 def validate(scenario: Source, overrides: Overrides = None) -> None:
-    """Check a scenario and say what it reads as."""
-    say(_description(load_scenario(scenario, overrides=overrides)))
+    """Check a scenario and say what it reads as, and what of it may not be meant."""
+    loaded = load_scenario(scenario, overrides=overrides)
+    say(_description(loaded))
+    for warning in warnings(loaded):
+        say(f"warning: {warning}")
 
 
 def _description(scenario: Scenario) -> Table:

@@ -9,7 +9,7 @@ from drake_formation.formation.formation import Formation
 from drake_formation.parameters import block_parameters, robot_name
 from drake_formation.parts.avoidance.khatib import Khatib, avoidance_force
 from drake_formation.parts.channels.ideal import IdealChannel
-from drake_formation.parts.coordination.consensus import Consensus, consensus_force
+from drake_formation.parts.coordination.consensus import LAWS, Consensus, ConsensusLaw
 from drake_formation.parts.part import Part
 from drake_formation.parts.references.set_point import SetPointReference
 from drake_formation.parts.references.trajectory import Motion as MovingReference
@@ -72,6 +72,8 @@ class ControlLaw:
         self._delta, self._delta_v = gains[listeners].T
         self._weights, self._listeners, self._speakers = formation.channels.weights, listeners, speakers
         self._gathered = np.eye(formation.robots)[listeners]
+        named = np.array([part.config.law for part in formation.parts["coordination"]])[listeners]
+        self._laws = [(LAWS[name], np.flatnonzero(named == name)) for name in sorted(set(named))]
         self._range, self._gain = np.array([group[0] for group in own["avoidance"]]).T
         self._obstacles = formation.obstacles
         self._masked = np.array([part.config.sensing == "nearest" for part in formation.parts["avoidance"]])
@@ -103,14 +105,21 @@ class ControlLaw:
         return polynomial_motion((times - starts[piece])[..., None], rising)
 
     def _consensus(self, position: Array, velocity: Array) -> Array:
-        i, j = self._listeners, self._speakers
+        result = np.zeros_like(position)
+        for law, channels in self._laws:
+            result += self._drawn(position, velocity, law, channels)
+        return result
+
+    def _drawn(self, position: Array, velocity: Array, law: ConsensusLaw, channels: NDArray[np.int64]) -> Array:
+        """What is heard over some channels, of one law, exerts."""
+        i, j = self._listeners[channels], self._speakers[channels]
         apart, drift = position[..., i, :] - position[..., j, :], velocity[..., i, :] - velocity[..., j, :]
         wanted = self._slots[i] - self._slots[j]
-        force = consensus_force(
+        force = law(
             apart[..., 0], apart[..., 1], drift[..., 0], drift[..., 1],
-            self._delta, self._delta_v, wanted[:, 0], wanted[:, 1],
+            self._delta[channels], self._delta_v[channels], wanted[:, 0], wanted[:, 1],
         )  # fmt: skip
-        return np.stack([(self._weights * x) @ self._gathered for x in force], axis=-1)
+        return np.stack([(self._weights[channels] * x) @ self._gathered[channels] for x in force], axis=-1)
 
     def _avoid(self, position: Array) -> Array:
         """The sum of what the sensed obstacles exert."""

@@ -10,13 +10,13 @@ from pydantic import Field
 from pydrake.systems.framework import BasicVector_, LeafSystem_
 
 from drake_formation.config.errors import Fault, shortened, shown
-from drake_formation.config.values import CostMatrix, Section
 from drake_formation.formation.formation import Formation
 from drake_formation.formation.links import Channels
 from drake_formation.parts.coordination.none import NoForce
+from drake_formation.parts.coordination.weights import Weights
 from drake_formation.parts.part import Numbers, Part
 from drake_formation.parts.registry import part
-from drake_formation.parts.tracking.lqr import Lqr, lqr_gain, tracking_force
+from drake_formation.parts.tracking.lqr import lqr_gain, tracking_force
 from drake_formation.parts.tracking.none import NoTracking
 from drake_formation.systems.templates import block_template, in_double
 
@@ -98,20 +98,14 @@ class LeaderFollower(Part):
     and Automation 17(6), 2001). The gain is that of the local LQR (paper, Eqs. 11-12), with weights of its own.
     """
 
-    class Config(Section):
+    class Config(Weights):
         """Who leads, and the weights by which others follow."""
 
         leader: Annotated[int, Field(ge=1)] = Field(default=1, description="number of the robot that leads, from 1")
-        Q: CostMatrix = Field(
-            default=1.0, description="state cost of a follower, 4 x 4: a number times I, a diagonal or a matrix"
-        )
-        R: CostMatrix = Field(
-            default=1.0, description="input cost of a follower, 2 x 2: a number times I, a diagonal or a matrix"
-        )
 
     def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:
         """Whether there is such a leader, whether its state reaches the robot, and whether the weights give a gain."""
-        yield from self._regulator.checks(formation, owner)
+        yield from self.config.regulator.checks(formation, owner)
         if self.config.leader > formation.robots:
             message = f"there is no robot {self.config.leader}"
             yield Fault(("leader",), message, shown(self.config.leader), f"one of the robots 1 to {formation.robots}")
@@ -141,7 +135,8 @@ class LeaderFollower(Part):
         """A follower's gain and its displacement; none of the leader."""
         if self.leads(owner):
             return ()
-        gain = lqr_gain(float(formation.masses[owner]), self._regulator.state_cost, self._regulator.input_cost)
+        weights = self.config.regulator
+        gain = lqr_gain(float(formation.masses[owner]), weights.state_cost, weights.input_cost)
         return gain, formation.slots[owner] - formation.slots[self._tree(formation)[owner]]
 
     def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:
@@ -151,11 +146,6 @@ class LeaderFollower(Part):
     def leads(self, owner: int) -> bool:
         """Whether the robot is its own leader."""
         return bool(self.config.leader == owner + 1)
-
-    @property
-    def _regulator(self) -> Lqr:
-        """The local LQR that has a follower's weights."""
-        return Lqr(Lqr.Config(Q=self.config.Q, R=self.config.R))
 
     def _tree(self, formation: Formation) -> Mapping[int, int]:
         """:func:`predecessors`, worked out once for a formation."""

@@ -166,7 +166,7 @@ class VirtualStructure(Part):
         k_sync: NonNegative = Field(default=0.025, description="k_S (1/s²), draws copies together; chosen: as k_G")
         d_sync: NonNegative = Field(default=0.225, description="d_S (1/s), damps copies' differences; chosen: as d_G")
         k_feedback: NonNegative = Field(
-            default=10.0, description="k_F (1/(m² s)), slows it by the formation's error; 0 is without feedback"
+            default=1.0, description="k_F (1/(m² s)), slows it by the formation's error; 0 is no feedback; chosen: 1"
         )
 
     def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:

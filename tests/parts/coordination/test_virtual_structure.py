@@ -80,7 +80,7 @@ def progress(graph, **gains):
     ahead = resolve(scenario(**abreast)).starts[1] + [2.0, 0.0]
     held = scenario(**abreast, **{
         "springs.stiffness": 0.0,
-        "consensus": {"kind": "virtual_structure", "graph": graph, **gains},
+        "consensus": {"kind": "virtual_structure", "graph": graph, "k_feedback": 10.0, **gains},
         "avoidance": {"range": 0.9, "gain": 300.0, "obstacles": [{"position": ahead.tolist()}]},
         "transport.duration": 10.0,
     })  # fmt: skip

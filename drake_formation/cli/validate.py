@@ -7,6 +7,7 @@ from rich.table import Table
 from drake_formation.cli.app import app
 from drake_formation.cli.options import Overrides, Source
 from drake_formation.formation import graphs
+from drake_formation.formation.rigidity import rigid_rank, rigidity_rank
 from drake_formation.scenario import Scenario, load_scenario, resolve, warnings
 from drake_formation.terminal import say
 
@@ -33,6 +34,8 @@ def _description(scenario: Scenario) -> Table:
         edges = " ".join(f"{i + 1}-{j + 1}" for i, j in graphs.edges(graph)) or "none"
         table.add_row(f"{name} edges", edges)
         table.add_row(f"{name} algebraic connectivity", f"{graphs.algebraic_connectivity(graph):.4g}")
+        rank = rigidity_rank(formation.slots, graphs.edges(graph))
+        table.add_row(f"{name} rigidity", f"rank {rank} of {rigid_rank(formation.robots)}")
     table.add_row("channels", str(len(formation.channels.pairs)))
     for name, role in ROLES.items():
         written = section(scenario, name)

@@ -140,4 +140,6 @@ def test_who_asks_for_distances_over_a_flexible_graph_is_warned(graph, told):
 def test_validate_prints_the_warning_and_takes_the_scenario(cli):
     status, out, _ = cli("validate", "quadrilateral", "--set", "consensus={law: hookean, delta: 1.0, graph: cycle}")
     assert status == 0
+    assert "rank 4 of 5" in out  # consensus
+    assert "rank 5 of 5" in out  # springs
     assert "warning: consensus.graph: law hookean does not hold the shape" in out

@@ -24,7 +24,7 @@ from drake_formation.systems.templates import block_template, in_double
 def predecessors(channels: Channels, leader: int) -> dict[int, int]:
     """Whom each robot follows: the one before it on a shortest way that the leader's state takes to it.
 
-    Where several are, it is the one reached first, by the robots' numbers. A channel of weight 0 leads nowhere.
+    Where several are, it is the one reached first, by the robots' numbers. The channels' weights have no say.
 
     Args:
         channels: who hears whom.
@@ -34,8 +34,7 @@ def predecessors(channels: Channels, leader: int) -> dict[int, int]:
         The predecessor of every robot that the leader's state reaches, without the leader.
     """
     speaking = nx.empty_graph(channels.robots, create_using=nx.DiGraph)
-    weighted = zip(channels.pairs.tolist(), channels.weights.tolist(), strict=True)
-    speaking.add_edges_from((j, i) for (i, j), weight in weighted if weight > 0)
+    speaking.add_edges_from((j, i) for i, j in channels.pairs.tolist())
     return dict(nx.bfs_predecessors(speaking, leader))
 
 
@@ -119,13 +118,11 @@ class LeaderFollower(Part):
         """Whether a leader has nothing to follow itself, or a follower two things."""
         path, tracks = ("..", "tracking", "kind"), not isinstance(formation.parts["tracking"][owner], NoTracking)
         if self.leads(owner) and not tracks:
-            yield Fault(
-                path, f"robot {owner + 1} leads and tracks no reference", allowed="another kind than none for it"
-            )
+            message = f"robot {owner + 1} leads and tracks no reference"
+            yield Fault(path, message, allowed="another kind than none for it")
         if not self.leads(owner) and tracks:
-            yield Fault(
-                path, "a follower tracks the reference too", allowed="{1: lqr, default: none} where robot 1 leads"
-            )
+            message = "a follower tracks the reference too"
+            yield Fault(path, message, allowed="{1: lqr, default: none} where robot 1 leads")
 
     def structure(self) -> Hashable:
         """Who leads, which says who is heard."""

@@ -7,9 +7,10 @@ from hypothesis import strategies as st
 from scipy.linalg import expm
 from strategies import graphs
 
-from drake_formation import ScenarioError, load_scenario, simulate
+from drake_formation import ScenarioError, build_diagram, load_scenario, simulate
 from drake_formation.analysis import IllPosedError, linearize
 from drake_formation.formation.links import Channels
+from drake_formation.parameters import set_parameters
 from drake_formation.parts.coordination.leader_follower import Follower, predecessors
 from drake_formation.parts.tracking.lqr import lqr_gain, robot_matrices
 from drake_formation.scenario import resolve, warnings
@@ -34,7 +35,7 @@ def test_who_follows_whom():
 
 
 def test_followers_hear_along_the_channels_and_not_against_them():
-    one_way = Channels.of(3, [(1, 0, 1.0), (2, 1, 1.0), (2, 0, 0.0)])  # robot 2 gives robot 0 no weight
+    one_way = Channels.of(3, [(1, 0, 1.0), (2, 1, 0.0)])
     assert predecessors(one_way, 0) == {1: 0, 2: 1}
     assert predecessors(one_way, 2) == {}
 
@@ -111,6 +112,15 @@ def test_who_tracks_is_asked_about():
     assert "a follower tracks the reference too" in str(both)
     (nobody,) = warnings(scenario(tracking={"kind": "none"}))
     assert "robot 1 leads and tracks no reference" in str(nobody)
+
+
+def test_another_leader_needs_another_diagram():
+    diagram = build_diagram(scenario("path"))
+    context = diagram.CreateDefaultContext()
+    set_parameters(diagram, context, scenario("path", **{"consensus.Q": 4.0}))
+    led_by_two = {"consensus.leader": 2, "tracking": {"kind": {2: "lqr", "default": "none"}}}
+    with pytest.raises(ValueError, match="another structure"):
+        set_parameters(diagram, context, scenario("path", **led_by_two))
 
 
 def test_it_is_not_certified():

@@ -87,8 +87,8 @@ def set_parameters(diagram: Diagram, context: Context, scenario: Scenario) -> No
 def write_parameters(diagram: Diagram, context: Context, parameters: Parameters) -> None:
     """Write numbers into a Context of a diagram that is known to have their blocks."""
     for path, values in parameters.items():
-        if path == "sensing" and not diagram.HasSubsystemNamed(path):
-            continue  # where every robot feels every obstacle nobody asks who is nearest
+        if not _asked_for(diagram, path):
+            continue
         block_context = find_block(diagram, path).GetMyMutableContextFromRoot(context)
         for index, value in enumerate(values):
             block_context.get_mutable_numeric_parameter(index).SetFromVector(np.ravel(value))
@@ -98,8 +98,13 @@ def write_start(diagram: Diagram, context: Context, formation: Formation) -> Non
     """Write the state in which a formation starts into a Context that holds the diagram's defaults."""
     for path, part, owner in placed_parts(formation):
         state = part.initial_state(formation, owner)
-        if state is not None:
+        if state is not None and _asked_for(diagram, path):
             find_block(diagram, path).GetMyMutableContextFromRoot(context).SetContinuousState(state)
+
+
+def _asked_for(diagram: Diagram, path: str) -> bool:
+    """Whether a block is in a diagram, which leaves out channels nobody listens to and sensing nobody uses."""
+    return bool(diagram.HasSubsystemNamed(path.split("/", maxsplit=1)[0]))
 
 
 def find_block(diagram: Diagram, path: str) -> Any:

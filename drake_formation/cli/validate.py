@@ -7,14 +7,18 @@ from rich.table import Table
 from drake_formation.cli.app import app
 from drake_formation.cli.options import Overrides, Source
 from drake_formation.formation import graphs
-from drake_formation.scenario import Scenario, load_scenario, resolve
+from drake_formation.formation.rigidity import rigid_rank, rigidity_rank
+from drake_formation.scenario import Scenario, load_scenario, resolve, warnings
 from drake_formation.terminal import say
 
 
 @app.command()
 def validate(scenario: Source, overrides: Overrides = None) -> None:
-    """Check a scenario and say what it reads as."""
-    say(_description(load_scenario(scenario, overrides=overrides)))
+    """Check a scenario and say what it reads as, and what of it may not be meant."""
+    loaded = load_scenario(scenario, overrides=overrides)
+    say(_description(loaded))
+    for warning in warnings(loaded):
+        say(f"warning: {warning}")
 
 
 def _description(scenario: Scenario) -> Table:
@@ -30,6 +34,8 @@ def _description(scenario: Scenario) -> Table:
         edges = " ".join(f"{i + 1}-{j + 1}" for i, j in graphs.edges(graph)) or "none"
         table.add_row(f"{name} edges", edges)
         table.add_row(f"{name} algebraic connectivity", f"{graphs.algebraic_connectivity(graph):.4g}")
+        rank = rigidity_rank(formation.slots, graphs.edges(graph))
+        table.add_row(f"{name} rigidity", f"rank {rank} of {rigid_rank(formation.robots)}")
     table.add_row("channels", str(len(formation.channels.pairs)))
     for name, role in ROLES.items():
         written = section(scenario, name)

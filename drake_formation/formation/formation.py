@@ -114,6 +114,13 @@ class Formation:
                 for fault in part.checks(self, owner):
                     yield role, owner, fault
 
+    def warnings_of_parts(self) -> Iterator[tuple[str, int, Any]]:
+        """What may not be meant: role, owner and what it is."""
+        for role, parts in self.parts.items():
+            for owner, part in enumerate(parts):
+                for fault in part.warnings(self, owner):
+                    yield role, owner, fault
+
     def changed(self, **changes: Any) -> "Formation":
         """The formation with some attributes replaced."""
         return replace(self, **changes)

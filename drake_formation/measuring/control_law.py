@@ -9,7 +9,7 @@ from drake_formation.formation.formation import Formation
 from drake_formation.parameters import block_parameters, robot_name
 from drake_formation.parts.avoidance.khatib import Khatib, avoidance_force
 from drake_formation.parts.channels.ideal import IdealChannel
-from drake_formation.parts.coordination.consensus import Consensus
+from drake_formation.parts.coordination.consensus import LAWS, Consensus
 from drake_formation.parts.part import Part
 from drake_formation.parts.references.set_point import SetPointReference
 from drake_formation.parts.references.trajectory import Motion as MovingReference
@@ -68,7 +68,14 @@ class ControlLaw:
         self._inertia = np.array([inertia[0] for _, inertia, _ in own["tracking"]])
         self._slots = formation.slots
         gains = np.array([group[0] for group in own["consensus"]])
-        self._delta, self._delta_v = (gain[:, None] * formation.channels.laplacian for gain in gains.T)
+        laws = np.array([part.config.law for part in formation.parts["coordination"]])
+        linear = np.where(laws == "linear", gains.T, 0.0)
+        self._delta, self._delta_v = (gain[:, None] * formation.channels.laplacian for gain in linear)
+        self._channels = formation.channels
+        self._others = [
+            (law, np.flatnonzero(laws[formation.channels.pairs[:, 0]] == law)) for law in set(laws) - {"linear"}
+        ]
+        self._consensus_gains = gains
         self._range, self._gain = np.array([group[0] for group in own["avoidance"]]).T
         self._obstacles = formation.obstacles
         self._masked = np.array([part.config.sensing == "nearest" for part in formation.parts["avoidance"]])
@@ -100,9 +107,23 @@ class ControlLaw:
         return polynomial_motion((times - starts[piece])[..., None], rising)
 
     def _consensus(self, position: Array, velocity: Array) -> Array:
-        """The virtual springs and dampers of all channels, by the Laplacian (paper, Eqs. 15 to 17)."""
+        """The virtual springs and dampers of all channels; linear ones by the Laplacian (paper, Eqs. 15 to 17)."""
         force: Array = -(self._delta @ (position - self._slots)) - self._delta_v @ velocity
+        for law, channels in self._others:
+            force += self._drawn(position, velocity, law, channels)
         return force
+
+    def _drawn(self, position: Array, velocity: Array, law: str, channels: NDArray[np.intp]) -> Array:
+        """What is heard over some channels, of one law, exerts."""
+        i, j = self._channels.pairs[channels].T
+        apart, drift = position[..., i, :] - position[..., j, :], velocity[..., i, :] - velocity[..., j, :]
+        wanted = self._slots[i] - self._slots[j]
+        delta, delta_v = self._consensus_gains[i].T
+        force = LAWS[law](
+            apart[..., 0], apart[..., 1], drift[..., 0], drift[..., 1], delta, delta_v, wanted[:, 0], wanted[:, 1]
+        )
+        gathered = self._channels.weights[channels, None] * np.eye(self._channels.robots)[i]
+        return np.stack([x @ gathered for x in force], axis=-1)
 
     def _avoid(self, position: Array) -> Array:
         """The sum of what the sensed obstacles exert."""

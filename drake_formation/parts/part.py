@@ -57,6 +57,10 @@ class Part:
         """
         return iter(())
 
+    def warnings(self, formation: Formation, owner: int) -> Iterator[Fault]:  # noqa: ARG002
+        """What can be run but may not be meant; as for :meth:`checks`, and asked of a sound formation only."""
+        return iter(())
+
     @classmethod
     def has_checks(cls) -> bool:
         """Whether there is anything to check."""

@@ -3,7 +3,7 @@
 from drake_formation.config.errors import Fault, ScenarioError
 from drake_formation.scenario.export import dump_scenario, json_schema, to_yaml
 from drake_formation.scenario.load import load_scenario, shipped_scenarios, with_overrides
-from drake_formation.scenario.resolve import resolve
+from drake_formation.scenario.resolve import resolve, warnings
 from drake_formation.scenario.schema import Scenario
 
 __all__ = [
@@ -16,5 +16,6 @@ __all__ = [
     "resolve",
     "shipped_scenarios",
     "to_yaml",
+    "warnings",
     "with_overrides",
 ]

@@ -90,8 +90,8 @@ def names(annotation: Any) -> list[str]:
     if get_origin(bare) is Literal:
         return [str(name) for name in get_args(bare)]
     if _is_section(bare):
-        keys = [key for key in CHOOSERS if key in bare.model_fields]
-        return [name for key in keys for name in names(bare.model_fields[key].annotation)]
+        key = next((key for key in CHOOSERS if key in bare.model_fields), None)  # others are fields like any
+        return names(bare.model_fields[key].annotation) if key else []
     return [name for branch in _branches(bare) for name in names(branch)] if _is_union(bare) else []
 
 

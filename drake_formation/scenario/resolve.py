@@ -1,6 +1,6 @@
 """From what was written to what it means: a scenario resolved into a formation, once."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,6 +43,15 @@ def resolve(scenario: Scenario) -> Formation:
         kept = scenario.__dict__[KEPT]
     formation: Formation = kept.formation
     return formation
+
+
+def warnings(scenario: Scenario) -> list[Fault]:
+    """What a scenario says that can be run but may not be meant.
+
+    Raises:
+        ScenarioError: the scenario is wrong.
+    """
+    return list(dict.fromkeys(_placed(scenario, resolve(scenario).warnings_of_parts())))
 
 
 def check(scenario: Scenario) -> list[Fault]:
@@ -123,7 +132,12 @@ def _formation(
 
 
 def _part_faults(scenario: Scenario, formation: Formation, roles: tuple[str, ...]) -> Iterator[Fault]:
-    for role, owner, fault in formation.faults_of_parts(roles):
+    yield from _placed(scenario, formation.faults_of_parts(roles))
+
+
+def _placed(scenario: Scenario, found: Iterable[tuple[str, int, Fault]]) -> Iterator[Fault]:
+    """Faults of parts with their paths in the scenario."""
+    for role, owner, fault in found:
         yield Fault(
             path_of(scenario, role, owner, fault.path), fault.message, fault.value, fault.allowed, fault.suggestion
         )

@@ -20,6 +20,16 @@ def test_the_laws_are_the_diagrams(scenario, rng):
     np.testing.assert_allclose(found.reshape(4, -1, 2), expected, rtol=1e-9, atol=1e-9)
 
 
+@pytest.mark.parametrize("law", ["hookean", ["linear", "hookean", "hookean", "linear"]])
+def test_the_law_of_consensus_is_each_robots_own(law):
+    scenario = load_scenario("quadrilateral", overrides={"consensus": {"law": law, "delta": 50.0, "delta_v": 5.0}})
+    diagram = build_diagram(with_overrides(scenario, {"aggregation.duration": 0.0}))
+    state = random_state(scenario, np.random.default_rng(1))
+    found = ControlLaw(resolve(scenario))(np.zeros(1), state[None, :, :2], state[None, :, 2:])
+    expected = robot_outputs(diagram, context_at(diagram, state), "control_force")
+    np.testing.assert_allclose(found[0], expected, rtol=1e-9, atol=1e-9)
+
+
 @pytest.mark.parametrize("feed_forward", [False, True])
 def test_the_law_follows_a_trajectory_as_the_diagram_does(feed_forward):
     overrides = {"aggregation.duration": 1.0, "transport.duration": 5.0, "tracking.feed_forward": feed_forward}

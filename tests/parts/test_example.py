@@ -29,6 +29,10 @@ cases = [
     {"springs": {"law": "stiffening", "stiffness": 20.0, "cubic": 5.0}},
     {"tracking": {"kind": {1: "sliding_mode", "default": "lqr"}, "gain": {1: 50.0}, "Q": 2.0}},
     {"consensus": {"delta": 20.0, "channel": {"kind": "lag", "time_constant": 0.1}}},
+    {
+        "consensus": {"kind": "leader_follower", "channel": {"kind": "lag", "time_constant": 0.1}},
+        "tracking": {"kind": {1: "lqr", "default": "none"}},
+    },
 ]
 for case in cases:
     scenario = load_scenario("line", overrides={**short, **case})

@@ -3,6 +3,7 @@ from typing import Annotated, Any
 import pytest
 
 from drake_formation.config.values import CostMatrix, Graph, Positive
+from drake_formation.parts import kinds
 from drake_formation.scenario.fields import chooser, locate, names, phrase
 from drake_formation.scenario.schema import (
     Line,
@@ -68,6 +69,7 @@ def test_names_are_those_a_value_may_choose_from():
     assert names(Graph) == ["complete", "cycle", "path", "star"]
     assert names(Scenario.model_fields["formation"].annotation) == ["line", "polygon", "grid", "slots"]
     assert names(Positive) == []
+    assert names(Annotated[Any, PartOf("coordination")]) == list(kinds("coordination"))  # not also its laws
     assert names(Reference) == ["set_point", "minimum_jerk", "potential_field", "waypoints"]
 
 

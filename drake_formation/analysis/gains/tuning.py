@@ -155,11 +155,17 @@ def _as_if_alike(formation: LinearFormation, effort_weight: float) -> tuple[Arra
 
 
 def _typical(formation: LinearFormation) -> tuple[float, float, float, float]:
-    """Mean local stiffness (N/m), damping (N s/m) and mass (kg), and mean nonzero Laplacian eigenvalue."""
+    """Mean local stiffness (N/m), damping (N s/m) and mass (kg), and mean nonzero Laplacian eigenvalue.
+
+    Raises:
+        IllPosedError: a robot has no local stiffness.
+    """
     rates = np.arange(len(formation.A)).reshape(-1, STATES)[:, 2:].ravel()
     masses = 1 / np.diag(formation.B[rates])
     stiffness = -masses * formation.tracking[rates, rates - 2]
     damping = -masses * formation.tracking[rates, rates]
+    if stiffness.min() <= 0:
+        raise IllPosedError("a robot has no local stiffness: without consensus error and effort have no end")
     connectivity = np.trace(formation.laplacian) / max(formation.robots - 1, 1)
     return float(stiffness.mean()), float(damping.mean()), float(masses.mean()), float(connectivity)
 

@@ -10,7 +10,7 @@ from drake_formation.parts.tracking.lqr import Lqr
 
 
 def require_linear_consensus(formation: Formation) -> None:
-    """Consensus with one δ and δ_v for all robots, over channels that are wires and weigh alike both ways.
+    """Linear consensus with one δ and δ_v for all robots, over channels that are wires and weigh alike both ways.
 
     Raises:
         IllPosedError: it is another law, or differs between robots or directions.
@@ -18,6 +18,8 @@ def require_linear_consensus(formation: Formation) -> None:
     for i, part in enumerate(formation.parts["coordination"]):
         if not isinstance(part, Consensus):
             raise IllPosedError(f"robot {i + 1} coordinates by {part.kind!r}; what is certified is consensus")
+        if part.config.law != "linear":
+            raise IllPosedError(f"robot {i + 1} has consensus.law {part.config.law!r}; what is certified is 'linear'")
     gains = {(part.config.delta, part.config.delta_v) for part in formation.parts["coordination"]}
     if len(gains) > 1:
         raise IllPosedError("robots have different consensus.delta or delta_v; what is certified is one for all")

@@ -15,6 +15,7 @@ from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.analysis.linear.linearization import Array, LinearFormation, linearize
 from drake_formation.analysis.linear.motion_subspaces import ROUNDING, rotation, spring_stiffness
 from drake_formation.formation.graphs import Edge
+from drake_formation.formation.rigidity import rigidity_rank
 from drake_formation.parts.springs.hookean import Hookean
 from drake_formation.parts.springs.linear import Linear
 from drake_formation.scenario import Scenario, with_overrides
@@ -91,7 +92,7 @@ def spring_linearization(formation: LinearFormation) -> SpringLinearization:
     if not stiff:
         raise IllPosedError("the object has no springs with stiffness: give springs.graph edges and springs.stiffness")
     slots = formation.resolved.slots
-    rank = int(np.linalg.matrix_rank(rigidity_matrix(slots, stiff), tol=ROUNDING))
+    rank = rigidity_rank(slots, stiff)
     exact, linear = (_stiffness(scenario, law) for law in ("hookean", "linear"))
     turning = rotation(slots)
     return SpringLinearization(
@@ -106,20 +107,6 @@ def spring_linearization(formation: LinearFormation) -> SpringLinearization:
         exact_rotation=_along(turning, exact),
         linear_rotation=_along(turning, linear),
     )
-
-
-def rigidity_matrix(slots: Array, edges: list[Edge]) -> Array:
-    """Change of every edge's length with the displacement of every robot, shape (edges, 2N).
-
-    Args:
-        slots: slots of the robots (m), shape (N, 2).
-        edges: pairs of robots from 0.
-    """
-    result = np.zeros((len(edges), 2 * len(slots)))
-    for row, (i, j) in zip(result, edges, strict=True):
-        along = (slots[i] - slots[j]) / np.linalg.norm(slots[i] - slots[j])
-        row[2 * i : 2 * i + 2], row[2 * j : 2 * j + 2] = along, -along
-    return result
 
 
 def stiff_springs(formation: LinearFormation) -> list[Edge]:

@@ -1,7 +1,7 @@
 """The consensus controller of one robot: virtual springs to the robots it talks with (paper, Eqs. 15-17)."""
 
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Callable, Hashable, Iterator, Sequence
+from typing import Any, Literal
 
 import networkx as nx
 import numpy as np
@@ -12,6 +12,7 @@ from pydrake.systems.framework import BasicVector_, LeafSystem_
 from drake_formation.config.errors import Fault, shortened, shown
 from drake_formation.config.values import NonNegative, Section
 from drake_formation.formation.formation import Formation
+from drake_formation.parts.coordination.distances import distance_force, flexible
 from drake_formation.parts.part import Numbers, Part
 from drake_formation.parts.registry import part
 from drake_formation.systems.scalars import Scalar
@@ -41,12 +42,19 @@ def consensus_force(
     return -(delta * (dx - hx) + delta_v * dvx), -(delta * (dy - hy) + delta_v * dvy)
 
 
+ConsensusLaw = Callable[..., tuple[Scalar, Scalar]]
+"""What one robot draws another with; arguments and result as in :func:`consensus_force`."""
+
+LAWS: dict[str, ConsensusLaw] = {"linear": consensus_force, "hookean": distance_force}
+"""By their names in scenarios."""
+
+
 @block_template("ConsensusController_", __name__)
 def ConsensusController_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
     """The controller as a template over double, AutoDiffXd and Expression; see :class:`ConsensusController`."""
 
     class Impl(LeafSystem_[T]):  # type: ignore[misc]
-        """The global control u_g of one robot (paper, Eq. 15).
+        """The global control u_g of one robot (paper, Eq. 15), by a law for each pair of robots.
 
         Input ports: ``state`` (size 4) and, per communication neighbour j, ``channel_j`` (the state it sends,
         size 4). Output port: ``force`` u_g (N, size 2). Parameters: 0, the gains [δ, δ_v] (N/m, N s/m); 1, for
@@ -60,6 +68,7 @@ def ConsensusController_(T: Any) -> Any:  # noqa: N802 - Drake's name for a temp
             gains: ArrayLike,
             displacements: ArrayLike,
             weights: ArrayLike | None = None,
+            law: ConsensusLaw = consensus_force,
             *,
             converter: Any = None,
         ) -> None:
@@ -70,11 +79,13 @@ def ConsensusController_(T: Any) -> Any:  # noqa: N802 - Drake's name for a temp
                 gains: [δ, δ_v] (N/m, N s/m).
                 displacements: desired displacement h_i − h_j of each neighbour (m), shape (neighbours, 2).
                 weights: γ_ij of each neighbour, shape (neighbours,); None where all are 1, as in the paper's cases.
+                law: how the robots of a pair draw each other.
                 converter: for Drake's scalar conversion.
             """
             LeafSystem_[T].__init__(self, converter=converter)
-            self.arguments = (neighbours, gains, displacements, weights)
-            self.kind = weights is None  # all else that it computes with is a parameter
+            self.arguments = (neighbours, gains, displacements, weights, law)
+            self.kind = weights is None, law  # all else that it computes with is a parameter
+            self._law = law
             self._zero = T(0.0)
             self._state = self.DeclareVectorInputPort("state", 4)
             self._channels = [self.DeclareVectorInputPort(f"channel_{j}", 4) for j in neighbours]
@@ -96,9 +107,10 @@ def ConsensusController_(T: Any) -> Any:  # noqa: N802 - Drake's name for a temp
             displacements = context.get_numeric_parameter(1).CopyToVector().reshape(-1, 2).tolist()
             weights = context.get_numeric_parameter(2).CopyToVector().tolist() if self._weighted else None
             fx = fy = self._zero
+            law = self._law
             for k, (port, (hx, hy)) in enumerate(zip(self._channels, displacements, strict=True)):
                 nx, ny, nvx, nvy = port.Eval(context).tolist()
-                gx, gy = consensus_force(x - nx, y - ny, vx - nvx, vy - nvy, delta, delta_v, hx, hy)
+                gx, gy = law(x - nx, y - ny, vx - nvx, vy - nvy, delta, delta_v, hx, hy)
                 if weights is not None:
                     gx, gy = weights[k] * gx, weights[k] * gy
                 fx, fy = fx + gx, fy + gy  # += would change an Expression in place
@@ -112,18 +124,32 @@ ConsensusController = in_double(ConsensusController_)
 
 @part("coordination", kind="consensus")
 class Consensus(Part):
-    """Virtual springs on displacements over the communication graph (paper, Eqs. 15-17)."""
+    """Virtual springs over the communication graph, on displacements (paper, Eqs. 15-17) or on distances."""
 
     class Config(Section):
-        """The gains of the virtual springs."""
+        """The gains of the virtual springs, and how they act."""
 
+        law: Literal["linear", "hookean"] = Field(
+            default="linear",
+            description="how robots draw each other: linear on displacements (Eq. 15), or hookean on distances, along "
+            "the lines between them, which leaves the formation free to turn; paper: linear",
+        )
         delta: NonNegative = Field(default=0.0, description="consensus gain δ (N/m); published: 0, 1e4, 2e4")
         delta_v: NonNegative = Field(default=0.0, description="velocity consensus gain δ_v (N s/m); paper: 0")
+
+    @property
+    def law(self) -> ConsensusLaw:
+        """How the robots of a pair draw each other."""
+        return LAWS[self.config.law]
+
+    @property
+    def _idle(self) -> bool:
+        return bool(self.config.delta == 0 and self.config.delta_v == 0)
 
     def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:  # noqa: ARG002
         """Whether the channels can bring all robots to agree (paper, Lemma 1)."""
         channels = formation.channels
-        if (self.config.delta == 0 and self.config.delta_v == 0) or channels.agree:
+        if self._idle or channels.agree:
             return
         if channels.undirected:
             groups = [sorted(group) for group in nx.connected_components(channels.graph)]
@@ -137,6 +163,15 @@ class Consensus(Part):
             value = ""
         yield Fault(("graph",), message, value, allowed)
 
+    def warnings(self, formation: Formation, owner: int) -> Iterator[Fault]:  # noqa: ARG002
+        """Whether distances over the channels hold the shape, where they are all that is held."""
+        if not self._idle and self.config.law == "hookean":
+            yield from flexible(formation)
+
+    def structure(self) -> Hashable:
+        """The law, which no parameter holds."""
+        return str(self.config.law)
+
     def numbers(self, formation: Formation, owner: int) -> Numbers:
         """The gains, the desired displacements, and the channels' weights where there are any."""
         channels = formation.channels
@@ -147,4 +182,4 @@ class Consensus(Part):
 
     def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:
         """The controller."""
-        return ConsensusController([j + 1 for j in formation.channels.heard[owner]], *numbers)
+        return ConsensusController([j + 1 for j in formation.channels.heard[owner]], *numbers, law=self.law)

@@ -18,6 +18,7 @@ def weighing(there, back):
     [
         ({"consensus.delta": [1.0, 2.0, 2.0, 2.0]}, "robots have different consensus.delta or delta_v"),
         ({"consensus.graph": [[1, 2], [2, 3], {"speaker": 3, "listener": 4}]}, "channels go one way"),
+        ({"consensus.law": ["linear", "hookean", "linear", "linear"]}, "robot 2 has consensus.law 'hookean'"),
         ({"consensus.graph": weighing(1.0, 0.5)}, "weigh differently each way"),
     ],
 )

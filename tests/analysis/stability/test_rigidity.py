@@ -9,7 +9,8 @@ from drake_formation import load_scenario
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.analysis.linear.linearization import linearize
 from drake_formation.analysis.linear.motion_subspaces import spring_stiffness
-from drake_formation.analysis.stability.rigidity import rigidity_matrix, spring_linearization, stiff_springs
+from drake_formation.analysis.stability.rigidity import spring_linearization, stiff_springs
+from drake_formation.formation.rigidity import rigidity_matrix
 from drake_formation.scenario import resolve
 
 
@@ -31,7 +32,7 @@ def test_drakes_stiffness_is_the_rigidity_matrix_weighted(scenario):
     slots, count = resolve(scenario).slots, formation.robots
     stiffness = resolve(scenario).field("spring", "stiffness")
     stiffness = stiffness[stiffness > 0]
-    lengths = rigidity_matrix(slots, edges)
+    lengths = rigidity_matrix(slots, edges).toarray()
     incidence = np.array([np.eye(count)[i] - np.eye(count)[j] for i, j in edges])
     exact = lengths.T @ np.diag(stiffness) @ lengths
     linear = np.kron(incidence.T @ np.diag(stiffness) @ incidence, np.eye(2))

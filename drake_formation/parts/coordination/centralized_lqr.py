@@ -13,9 +13,12 @@ from drake_formation.formation.formation import Formation
 from drake_formation.parts.coordination.linear_formation import formation_matrices, spring_matrix
 from drake_formation.parts.coordination.state_feedback import StateFeedback, rows_of
 from drake_formation.parts.coordination.weights import (
+    NO_OPTIMUM,
     Weights,
+    can_be_designed,
     hearing_faults,
     input_cost,
+    no_optimum,
     state_cost,
     together_faults,
     weight_faults,
@@ -80,10 +83,15 @@ class CentralizedLqr(Part):
 
     def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:
         """Whether every robot hears all others, is under this control alone, and Drake finds the optimum."""
-        faults = [*weight_faults(self.config), *together_faults(formation, owner), *hearing_faults(formation, owner)]
+        faults = [*weight_faults(self.config), *together_faults(formation, owner, ("relative_cost",))]
+        faults += hearing_faults(formation, owner)
         yield from faults
-        if not faults and _sound(formation):
-            yield from optimum_faults(formation)
+        if faults or not can_be_designed(formation):
+            return
+        try:
+            centralized_gains(formation)
+        except NO_OPTIMUM:
+            yield no_optimum()
 
     def numbers(self, formation: Formation, owner: int) -> Numbers:
         """Slots of the robot and of those it hears, and its rows of the gains without and by the object."""
@@ -95,21 +103,3 @@ class CentralizedLqr(Part):
     def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:
         """The controller."""
         return StateFeedback([j + 1 for j in formation.channels.heard[owner]], *numbers)
-
-
-def optimum_faults(formation: Formation) -> Iterator[Fault]:
-    """Whether Drake finds the gains of a formation whose single fields are sound."""
-    try:
-        centralized_gains(formation)
-    except (RuntimeError, ArithmeticError, np.linalg.LinAlgError):
-        message = "Drake finds no stabilizing gain for the formation linearized about its slots"
-        yield Fault((), message, allowed="Q, R, masses and springs of less different sizes")
-
-
-def _sound(formation: Formation) -> bool:
-    """Whether the design is asked of it: other robots' weights are sound, and no two slots joined by a spring are one.
-
-    What is wrong is told elsewhere.
-    """
-    weights = (part.config for part in formation.parts["coordination"])
-    return bool(formation.rest_lengths.all()) and not any(fault for one in weights for fault in weight_faults(one))

@@ -43,8 +43,8 @@ class DistributedLqr(Part):
 
     def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:
         """Whether robots are alike, talk both ways over a connected graph, and the design is stable."""
-        faults = [*weight_faults(self.config), *together_faults(formation, owner), *_identical_faults(formation)]
-        faults += _graph_faults(formation)
+        faults = [*weight_faults(self.config), *together_faults(formation, owner, ("Q", "R", "relative_cost", "scale"))]
+        faults += [*_mass_faults(formation), *_graph_faults(formation)]
         yield from faults
         if not faults and not designed(formation).decay > 0:
             allowed = f"above {designed(formation).sufficient_scale:.6g}, or none given"
@@ -77,15 +77,13 @@ def designed(formation: Formation) -> DistributedGains:
     return kept
 
 
-def _identical_faults(formation: Formation) -> Iterator[Fault]:
-    masses, configs = formation.masses, [part.config for part in formation.parts["coordination"]]
-    allowed = "one for all robots: a distributed LQR is for identical ones"
+def _mass_faults(formation: Formation) -> Iterator[Fault]:
+    masses = formation.masses
     if np.ptp(masses) > 0:
-        message = f"masses run from {masses.min():g} to {masses.max():g} kg"
-        yield Fault(("..", "robots", "mass"), message, allowed=allowed)
-    for name in ("Q", "R", "scale"):
-        if any(getattr(config, name, None) != getattr(configs[0], name, None) for config in configs):
-            yield Fault((name,), "robots have different ones", allowed=allowed)
+        message = (
+            f"masses run from {masses.min():g} to {masses.max():g} kg, and a distributed LQR is for identical robots"
+        )
+        yield Fault(("..", "robots", "mass"), message, allowed="one for all robots")
 
 
 def _graph_faults(formation: Formation) -> Iterator[Fault]:

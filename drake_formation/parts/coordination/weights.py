@@ -67,15 +67,18 @@ def weight_faults(weights: Weights) -> Iterator[Fault]:
         yield Fault(path, "not positive semi-definite", shown(weights.relative_cost), allowed)
 
 
-def together_faults(formation: Formation, owner: int) -> Iterator[Fault]:
-    """Whether all robots are under one control: the same kind and relative cost, and no other control of tracking."""
+def together_faults(formation: Formation, owner: int, alike: tuple[str, ...]) -> Iterator[Fault]:
+    """Whether all robots are under one control: of one kind, with some fields alike, and no other one for tracking."""
     part: Part = formation.parts["coordination"][owner]
     for j, other in enumerate(formation.parts["coordination"]):
         if type(other) is not type(part):
             message = f"robot {j + 1} coordinates by {other.kind!r}, but {part.kind!r} is the control of all robots"
             yield Fault(("kind",), message, other.kind, f"{part.kind} for all robots")
-        elif other.config.relative_cost != part.config.relative_cost:
-            yield Fault(("relative_cost",), "robots have different ones", allowed="one for all robots")
+            return
+    configs = [other.config for other in formation.parts["coordination"]]
+    for name in alike:
+        if any(getattr(config, name) != getattr(configs[0], name) for config in configs):
+            yield Fault((name,), "robots have different ones", allowed="one for all robots")
     tracking: Part = formation.parts["tracking"][owner]
     if tracking.kind != "none":
         message = f"robot {owner + 1} tracks by {tracking.kind!r}, whose force {part.kind!r} takes no account of"
@@ -89,3 +92,22 @@ def hearing_faults(formation: Formation, owner: int) -> Iterator[Fault]:
         others = shortened(", ".join(str(j + 1) for j in missing))
         message = f"robot {owner + 1} does not hear robots {others}, and its force depends on the state of every robot"
         yield Fault(("graph",), message, allowed="complete, or a channel to every robot from every other")
+
+
+NO_OPTIMUM = (RuntimeError, ArithmeticError, np.linalg.LinAlgError)
+"""What is raised where there is no optimal control."""
+
+
+def no_optimum() -> Fault:
+    """What is then said."""
+    message = "Drake finds no stabilizing gain for the formation linearized about its slots"
+    return Fault((), message, allowed="Q, R, masses and springs of less different sizes")
+
+
+def can_be_designed(formation: Formation) -> bool:
+    """Whether an optimum can be looked for: all robots' weights are sound, and no spring joins two slots that are one.
+
+    What is wrong otherwise is told by others.
+    """
+    weights = (part.config for part in formation.parts["coordination"])
+    return bool(formation.rest_lengths.all()) and not any(fault for one in weights for fault in weight_faults(one))

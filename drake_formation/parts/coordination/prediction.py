@@ -114,7 +114,7 @@ class Prediction:
         return self.forced.reshape(self.horizon, self.robots, 4, -1)[:, :, :2]
 
 
-@functools.lru_cache(maxsize=64)
+@functools.lru_cache(maxsize=4)  # they are large, and a run needs two
 def prediction(packed: bytes, robots: int, horizon: int) -> Prediction:
     """The prediction of a :meth:`SampledModel.pack`, as bytes; all robots of a formation share one."""
     model = SampledModel.unpack(np.frombuffer(packed), robots)

@@ -81,7 +81,7 @@ def together_faults(formation: Formation, owner: int, alike: tuple[str, ...]) ->
             yield Fault((name,), "robots have different ones", allowed="one for all robots")
     tracking: Part = formation.parts["tracking"][owner]
     if tracking.kind != "none":
-        message = f"robot {owner + 1} tracks by {tracking.kind!r}, whose force {part.kind!r} takes no account of"
+        message = f"{part.kind!r} is the whole control and takes no account of the force of {tracking.kind!r}"
         yield Fault(("..", "tracking", "kind"), message, tracking.kind, "none")
 
 
@@ -89,8 +89,8 @@ def hearing_faults(formation: Formation, owner: int) -> Iterator[Fault]:
     """Whether a robot hears all others."""
     missing = sorted(set(range(formation.robots)) - {owner, *formation.channels.heard[owner]})
     if missing:
-        others = shortened(", ".join(str(j + 1) for j in missing))
-        message = f"robot {owner + 1} does not hear robots {others}, and its force depends on the state of every robot"
+        others = f"robot{'s' if len(missing) > 1 else ''} {shortened(', '.join(str(j + 1) for j in missing))}"
+        message = f"robot {owner + 1} does not hear {others}, and its force depends on the state of every robot"
         yield Fault(("graph",), message, allowed="complete, or a channel to every robot from every other")
 
 

@@ -125,10 +125,10 @@ SHORT_ = {k.replace(".", "__"): v for k, v in SHORT.items()}
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"consensus__graph": "cycle"}, r"consensus\.graph: robot 1 does not hear robots 3, and its force depends on"),
+        ({"consensus__graph": "cycle"}, r"consensus\.graph: robot 1 does not hear robot 3, and its force depends on"),
         (
             {"tracking": {"kind": "lqr"}},
-            r"tracking\.kind: robot 1 tracks by 'lqr', whose force 'centralized_lqr' takes no",
+            r"tracking\.kind: 'centralized_lqr' is the whole control and takes no account",
         ),
         ({"consensus__kind": {"2": "consensus", "default": "centralized_lqr"}}, "robot 2 coordinates by 'consensus'"),
         ({"consensus__relative_cost": -1.0}, r"consensus\.relative_cost: not positive semi-definite"),

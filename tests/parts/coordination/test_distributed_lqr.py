@@ -131,7 +131,7 @@ def test_engines_agree():
         ({"consensus.graph": [[1, 2], {"speaker": 2, "listener": 3}]}, r"consensus\.graph: channels go one way"),
         ({"consensus.scale": 0.0}, r"consensus\.scale: out of range"),
         ({"consensus.relative_cost": -1.0}, r"consensus\.relative_cost: not positive semi-definite"),
-        ({"tracking": {"kind": "lqr"}}, r"tracking\.kind: robot 1 tracks by 'lqr'"),
+        ({"tracking": {"kind": "lqr"}}, r"tracking\.kind: 'distributed_lqr' is the whole control"),
     ],
 )
 def test_what_it_is_not_for_is_refused(changes, words):

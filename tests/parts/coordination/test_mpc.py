@@ -165,7 +165,7 @@ def test_a_run_that_stops_so_leaves_its_folder(cli, tmp_path):
     status, _, error = cli("run", "hurled.yaml", "--out", "out")
     assert status == 3
     assert "at robot 2: no forces of at most 20 N keep it 0.4 m from obstacle 1" in error
-    assert any((tmp_path / "out").rglob("*.nc"))
+    assert (tmp_path / "out.failed" / "result.nc").exists()
 
 
 def test_it_is_not_compiled_and_says_so():
@@ -204,8 +204,8 @@ def test_springs_of_the_model_are_the_objects():
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"consensus.graph": []}, r"consensus\.graph: robot 1 does not hear robots 2"),
-        ({"tracking": {"kind": "lqr"}}, r"tracking\.kind: robot 1 tracks by 'lqr', whose force 'mpc' takes no account"),
+        ({"consensus.graph": []}, r"consensus\.graph: robot 1 does not hear robot 2"),
+        ({"tracking": {"kind": "lqr"}}, r"tracking\.kind: 'mpc' is the whole control and takes no account"),
         ({"consensus.horizon": 0}, r"consensus\.horizon: out of range"),
         ({"consensus.horizon": 101}, r"consensus\.horizon: out of range"),
         ({"consensus.period": 0.0}, r"consensus\.period: out of range"),

@@ -49,7 +49,7 @@ def centralized_gains(formation: Formation) -> CentralizedGains:
     """The optimal gains for a formation and its robots' weights, by Drake's ``LinearQuadraticRegulator``.
 
     Raises:
-        RuntimeError: Drake finds no stabilizing gain.
+        One of NO_OPTIMUM: Drake finds no stabilizing gain.
     """
     if KEPT not in formation.kept:
         a, b = formation_matrices(formation.masses)
@@ -61,10 +61,7 @@ def centralized_gains(formation: Formation) -> CentralizedGains:
 
 
 def _gain(a: Array, b: Array, q: Array, r: Array) -> Array:
-    try:
-        gain, _ = LinearQuadraticRegulator(a, b, q, r)
-    except SystemExit as error:  # how Drake reports a failed demand
-        raise RuntimeError(str(error)) from error
+    gain, _ = LinearQuadraticRegulator(a, b, q, r)
     if not np.linalg.eigvals(a - b @ gain).real.max() < 0:
         raise RuntimeError("the gain does not stabilize")
     return np.asarray(gain)

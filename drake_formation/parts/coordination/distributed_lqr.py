@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 from pydantic import Field
 
-from drake_formation.config.errors import Fault, shown
+from drake_formation.config.errors import Fault
 from drake_formation.config.values import CostMatrix, Positive
 from drake_formation.formation.formation import Formation
 from drake_formation.parts.coordination.distributed_gains import DistributedGains, distributed_gains
 from drake_formation.parts.coordination.state_feedback import StateFeedback
-from drake_formation.parts.coordination.weights import Weights, together_faults, weight_faults
+from drake_formation.parts.coordination.weights import NO_OPTIMUM, Weights, together_faults, weight_faults
 from drake_formation.parts.part import Numbers, Part
 from drake_formation.parts.registry import part
 from drake_formation.parts.tracking.lqr import cost_matrix
@@ -46,9 +46,15 @@ class DistributedLqr(Part):
         faults = [*weight_faults(self.config), *together_faults(formation, owner, ("Q", "R", "relative_cost", "scale"))]
         faults += [*_mass_faults(formation), *_graph_faults(formation)]
         yield from faults
-        if not faults and not designed(formation).decay > 0:
-            allowed = f"above {designed(formation).sufficient_scale:.6g}, or none given"
-            yield Fault(("scale",), "it leaves a mode unstable even without springs", shown(self.config.scale), allowed)
+        if faults:
+            return
+        try:
+            stable = designed(formation).decay > 0
+        except NO_OPTIMUM:
+            stable = False
+        if not stable:
+            message = "the design leaves a mode unstable even without springs"
+            yield Fault((), message, allowed="weights and masses of less different sizes, and a larger scale or none")
 
     def numbers(self, formation: Formation, owner: int) -> Numbers:
         """Slots of the robot and of those it hears, and its rows of I ⊗ K₁ + M ⊗ K₂."""

@@ -35,7 +35,10 @@ Horizon = Annotated[int, Field(ge=1, le=100)]
 class MpcConfig(Weights):
     """The cost, the samples and the constraints."""
 
-    period: Positive = Field(default=0.2, description="time between plans (s), one for all robots; chosen: 0.2")
+    period: Positive = Field(
+        default=0.2,
+        description="time between plans (s), which are made at its multiples, one for all robots; chosen: 0.2",
+    )
     horizon: Horizon = Field(
         default=20, description="samples that a plan reaches ahead, from 1 to 100, one for all robots; chosen: 20"
     )
@@ -105,7 +108,7 @@ def models(formation: Formation) -> tuple[SampledModel, SampledModel]:
     """The sampled linear formation without the object and with its springs.
 
     Raises:
-        RuntimeError: there is no optimum.
+        One of NO_OPTIMUM: there is none.
     """
     if KEPT not in formation.kept:
         a, b = formation_matrices(formation.masses)

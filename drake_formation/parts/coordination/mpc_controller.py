@@ -1,5 +1,6 @@
 """The block of one robot under model predictive control: a plan at every sample, its first force held in between."""
 
+import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -67,26 +68,13 @@ class MpcController(LeafSystem):  # type: ignore[misc]
 
     def _plan(self, context: Any, discrete_state: Any) -> None:
         numbers = [context.get_numeric_parameter(k).CopyToVector() for k in range(6)]
-        limits, distance, slots, obstacles = (
-            numbers[0],
-            numbers[1],
-            numbers[2].reshape(-1, 2),
-            numbers[3].reshape(-1, 3),
-        )
-        carrying = self._phase.Eval(context)[0] > 0.5
-        if not carrying:
-            obstacles = obstacles[:0]  # they are felt in the transport
-        predicted = prediction(numbers[5 if carrying else 4].tobytes(), self._robots, self._schedule.horizon)
-        states = np.array([port.Eval(context) for port in self._states])
-        centre = self._reference.Eval(context)[:STATE]
-        errors = (states - centre - np.hstack([slots, np.zeros_like(slots)])).ravel()
-        free_path = predicted.paths(slots, centre, self._schedule.period, errors)
-        guess = _moved_on(context.get_discrete_state_vector().CopyToVector(), 2 * self._robots)
-        kept = constraints(predicted, states[:, :2], free_path, guess, limits, obstacles, distance)
+        known = [port.Eval(context) for port in (*self._states, self._reference, self._phase)]
+        last = context.get_discrete_state_vector().CopyToVector()
         try:
-            discrete_state.set_value(best_plan(predicted, errors, kept))
+            plan = found(self._schedule, tuple(values.tobytes() for values in (*numbers, np.concatenate(known), last)))
         except InfeasibleError as failure:
-            raise self._failed(failure, limits, distance) from failure
+            raise self._failed(failure, limits=numbers[0], distance=numbers[1]) from failure
+        discrete_state.set_value(plan)
 
     def _failed(self, failure: InfeasibleError, limits: Array, distance: Array) -> PartFailedError:
         robot = failure.robot
@@ -98,6 +86,32 @@ class MpcController(LeafSystem):  # type: ignore[misc]
         return PartFailedError(message, robot + 1, "a larger consensus.limit or horizon, or a smaller clearance")
 
 
-def _moved_on(plan: Array, forces: int) -> Array:
-    """A plan one sample later, with no force at its end."""
-    return np.concatenate([plan[forces:], np.zeros(forces)])
+@functools.lru_cache(maxsize=8)
+def found(schedule: Schedule, knowledge: tuple[bytes, ...]) -> Array:
+    """The plan; robots that know the same find the same one, so it is looked for once.
+
+    Args:
+        schedule: of the robots.
+        knowledge: as bytes the six numeric parameters, then the states of all robots, the reference and the phase in
+            one row, and the last plan.
+
+    Raises:
+        InfeasibleError: there is none.
+    """
+    limits, distance, slots, obstacles, gathering, carrying, known, last = map(np.frombuffer, knowledge)
+    robots = len(limits)
+    states, centre = known[: STATE * robots].reshape(robots, STATE), known[STATE * robots :][:STATE]
+    transport = known[-1] > 0.5
+    predicted = prediction((carrying if transport else gathering).tobytes(), robots, schedule.horizon)
+    at_slots = np.hstack([slots.reshape(robots, 2), np.zeros((robots, 2))])
+    errors = (states - centre - at_slots).ravel()
+    kept = constraints(
+        predicted,
+        now=states[:, :2],
+        free_path=predicted.paths(at_slots[:, :2], centre, schedule.period, errors),
+        guess=np.concatenate([last[2 * robots :], np.zeros(2 * robots)]),  # the last plan, a sample later
+        limits=limits,
+        obstacles=obstacles.reshape(-1, 3) if transport else np.zeros((0, 3)),
+        distance=distance,
+    )
+    return best_plan(predicted, errors, kept)

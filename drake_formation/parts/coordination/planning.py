@@ -1,18 +1,23 @@
-"""The plan of least cost within force limits and clear of obstacles: a quadratic program, by Drake and OSQP."""
+"""The plan of least cost within force limits and clear of obstacles: a quadratic program, by Drake and OSQP.
 
-from dataclasses import dataclass
+Where there is no such plan, a linear program (by Drake and CLP) says how much is missing for one.
+"""
+
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from pydrake.solvers import MathematicalProgram, MathematicalProgramResult, OsqpSolver, SolverOptions
+from pydrake.solvers import ClpSolver, MathematicalProgram, OsqpSolver, SolverOptions
 
 from drake_formation.parts.coordination.half_planes import normals
 from drake_formation.parts.coordination.prediction import Prediction
 
 Array = NDArray[np.float64]
 
-ACCURACY = 1e-7
-"""OSQP's tolerance, absolute and relative."""
+UNLIMITED = 1e9
+"""A force (N) that no plan needs."""
+ACCURACY = 1e-5
+"""OSQP's tolerance, absolute and relative, before it polishes what it found."""
 MOST_ITERATIONS = 20_000
 SLIGHT = 1e-3
 """How much of a distance may be missing (m) before there is said to be no plan, as the model is not exact."""
@@ -48,6 +53,12 @@ class Constraints:
     rows: Array
     bounds: Array
 
+    @property
+    def asked(self) -> NDArray[np.bool_]:
+        """The half-planes that some plan within the limits would break, shape (H, N, M)."""
+        reached: NDArray[np.bool_] = self.bounds > -(np.abs(self.rows) @ np.minimum(self.limits, UNLIMITED))
+        return reached
+
     def kept_by(self, plan: Array) -> bool:
         """Whether a plan keeps all of them."""
         return bool((np.abs(plan) <= self.limits).all() and (self.rows @ plan >= self.bounds).all())
@@ -80,59 +91,71 @@ def best_plan(predicted: Prediction, errors: Array, kept: Constraints) -> Array:
 
     Raises:
         InfeasibleError: no plan keeps the constraints.
+        RuntimeError: OSQP finds none within force limits alone, which any is.
     """
     plan: Array = predicted.best @ errors
     if kept.kept_by(plan):
         return plan
-    gradient = predicted.slope @ errors
-    result, plan = _solved(predicted.hessian, gradient, kept, kept.bounds)
-    if result.is_success():
-        return plan
+    found = _solved(predicted, errors, kept)
+    if found is not None:
+        return found
+    if not kept.asked.any():
+        raise RuntimeError(f"OSQP finds no plan within force limits in {MOST_ITERATIONS} iterations")
     missing = _missing(kept)
-    robot, obstacle = np.unravel_index(int(missing.argmax()), missing.shape)
     if missing.max() <= SLIGHT:
-        result, plan = _solved(predicted.hessian, gradient, kept, kept.bounds - missing - ACCURACY)
-        if result.is_success():
-            return plan
+        found = _solved(predicted, errors, replace(kept, bounds=kept.bounds - missing - ACCURACY))
+        if found is not None:
+            return found
+    robot, obstacle = np.unravel_index(int(missing.argmax()), missing.shape)
     raise InfeasibleError(int(robot), int(obstacle), float(missing.max()))
 
 
 def _missing(kept: Constraints) -> Array:
-    """By how much each robot's distance to each obstacle has to be shortened (m), least squares, shape (N, M)."""
-    horizon, robots, obstacles, forces = kept.rows.shape
-    count = robots * obstacles
-    shortened = np.tile(np.eye(count).reshape(1, robots, obstacles, count), (horizon, 1, 1, 1))
-    softened = Constraints(
-        np.concatenate([kept.limits, np.full(count, np.inf)]),
-        np.concatenate([kept.rows, shortened], axis=-1),
-        kept.bounds,
-    )
-    # Next to nothing for the forces, so that one of many plans is the best.
-    hessian = np.diag(np.concatenate([np.full(forces, 1e-9), np.full(count, 2.0)]))
-    _, solution = _solved(hessian, np.zeros(len(hessian)), softened, kept.bounds)
-    missing: Array = np.maximum(solution[forces:], 0.0).reshape(robots, obstacles)
-    return missing
-
-
-def _solved(
-    hessian: Array, gradient: Array, kept: Constraints, bounds: Array
-) -> tuple[MathematicalProgramResult, Array]:
+    """By how much each robot's distance to each obstacle has to be shortened (m), in sum the least, shape (N, M)."""
+    _, robots, obstacles, forces = kept.rows.shape
     program = MathematicalProgram()
-    plan = program.NewContinuousVariables(len(gradient))
-    program.AddQuadraticCost(hessian, gradient, plan, is_convex=True)
-    if limited := np.flatnonzero(np.isfinite(kept.limits)).tolist():
-        program.AddBoundingBoxConstraint(-kept.limits[limited], kept.limits[limited], plan[limited])
-    asked = np.isfinite(bounds)
-    if asked.any():
-        rows = kept.rows[asked]
-        program.AddLinearConstraint(rows, bounds[asked], np.full(len(rows), np.inf), plan)
+    plan = program.NewContinuousVariables(forces)
+    missing = program.NewContinuousVariables(robots * obstacles)
+    _limit(program, plan, kept.limits)
+    program.AddBoundingBoxConstraint(0.0, np.inf, missing)
+    program.AddLinearCost(np.ones(len(missing)), missing)
+    asked = kept.asked
+    shortened = np.eye(len(missing)).reshape(robots, obstacles, -1)[np.nonzero(asked)[1:]]
+    rows = np.hstack([kept.rows[asked], shortened])
+    program.AddLinearConstraint(rows, kept.bounds[asked], np.full(len(rows), np.inf), np.concatenate([plan, missing]))
+    found: Array = ClpSolver().Solve(program).GetSolution(missing)
+    return found.reshape(robots, obstacles)
+
+
+def _solved(predicted: Prediction, errors: Array, kept: Constraints) -> Array | None:
+    """The plan of least cost, or None where OSQP finds none."""
+    program = MathematicalProgram()
+    plan = program.NewContinuousVariables(len(kept.limits))
+    program.AddQuadraticCost(predicted.hessian, predicted.slope @ errors, plan, is_convex=True)
+    _limit(program, plan, kept.limits)
+    rows = kept.rows[kept.asked]
+    if len(rows):
+        program.AddLinearConstraint(rows, kept.bounds[kept.asked], np.full(len(rows), np.inf), plan)
     result = OsqpSolver().Solve(program, None, _OPTIONS)
-    return result, np.asarray(result.GetSolution(plan), dtype=float)
+    return np.asarray(result.GetSolution(plan), dtype=float) if result.is_success() else None
+
+
+def _limit(program: MathematicalProgram, plan: NDArray[np.object_], limits: Array) -> None:
+    limited = np.isfinite(limits)
+    if limited.any():
+        program.AddBoundingBoxConstraint(-limits[limited], limits[limited], plan[limited])
 
 
 def _options() -> SolverOptions:
     options = SolverOptions()
-    for name, value in (("eps_abs", ACCURACY), ("eps_rel", ACCURACY), ("max_iter", MOST_ITERATIONS), ("polishing", 1)):
+    values = {
+        "eps_abs": ACCURACY,
+        "eps_rel": ACCURACY,
+        "max_iter": MOST_ITERATIONS,
+        "adaptive_rho_interval": 50,  # iterations: a run that is repeated has the same plans, however long they took
+        "polishing": 1,
+    }
+    for name, value in values.items():
         options.SetOption(OsqpSolver.id(), name, value)
     return options
 

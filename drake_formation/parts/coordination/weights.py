@@ -94,8 +94,8 @@ def hearing_faults(formation: Formation, owner: int) -> Iterator[Fault]:
         yield Fault(("graph",), message, allowed="complete, or a channel to every robot from every other")
 
 
-NO_OPTIMUM = (RuntimeError, ArithmeticError, np.linalg.LinAlgError)
-"""What is raised where there is no optimal control."""
+NO_OPTIMUM = (RuntimeError, ArithmeticError, np.linalg.LinAlgError, SystemExit)
+"""What is raised where there is no optimal control; SystemExit is how Drake reports a failed demand."""
 
 
 def no_optimum() -> Fault:

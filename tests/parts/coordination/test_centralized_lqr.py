@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydrake.systems.primitives import Linearize
-from scipy.linalg import block_diag, solve_continuous_lyapunov
+from scipy.linalg import block_diag, solve_continuous_are, solve_continuous_lyapunov
 from strategies import cost, generators
 
 from drake_formation import ScenarioError, build_diagram, load_scenario, set_parameters, simulate
@@ -64,6 +64,17 @@ def test_no_decentralized_gain_costs_less(law, stiffness, damping, relative, rng
     a += spring_matrix(formation)
     optimal = mean_cost(a, b, centralized_gains(formation).carrying, formation)
     assert optimal <= mean_cost(a, b, local_gains(formation), formation) * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("name", ["line", "quadrilateral", "octagon"])
+@pytest.mark.parametrize("stiffness", [1.45, 3e4])
+def test_it_solves_the_riccati_equation_of_the_whole(name, stiffness):
+    formation = resolve(scenario(name, springs__stiffness=stiffness, consensus__relative_cost=10.0))
+    a, b = formation_matrices(formation.masses)
+    a += spring_matrix(formation)
+    riccati = solve_continuous_are(a, b, state_cost(formation), input_cost(formation))
+    expected = np.linalg.solve(input_cost(formation), b.T @ riccati)
+    np.testing.assert_allclose(centralized_gains(formation).carrying, expected, atol=1e-6 * np.abs(expected).max())
 
 
 @given(generators)

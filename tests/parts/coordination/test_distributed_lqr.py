@@ -129,6 +129,7 @@ def test_engines_agree():
         ({"consensus.Q": {"1": 2.0, "default": 1.0}}, r"consensus\.Q.*robots have different ones"),
         ({"consensus.graph": [[1, 2]]}, r"consensus\.graph: it is in parts that never hear of each other"),
         ({"consensus.graph": [[1, 2], {"speaker": 2, "listener": 3}]}, r"consensus\.graph: channels go one way"),
+        ({"consensus.R": 1e-300}, r"consensus: the design leaves a mode unstable"),
         ({"consensus.scale": 0.0}, r"consensus\.scale: out of range"),
         ({"consensus.relative_cost": -1.0}, r"consensus\.relative_cost: not positive semi-definite"),
         ({"tracking": {"kind": "lqr"}}, r"tracking\.kind: 'distributed_lqr' is the whole control"),

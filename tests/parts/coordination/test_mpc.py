@@ -19,6 +19,7 @@ from drake_formation.parts.coordination.mpc import models
 from drake_formation.parts.coordination.prediction import SampledModel, prediction
 from drake_formation.scenario import resolve, to_yaml, with_overrides
 from drake_formation.simulation import PreparedRun, SimulationError
+from drake_formation.simulation.phases import felt_obstacles
 
 BEFORE_IT = {"avoidance.obstacles": [{"position": [5.0, 3.8], "radius": 0.3}], "avoidance.gain": 0.0}
 """An obstacle in the upper robot's way, a little below it."""
@@ -114,6 +115,19 @@ def test_limits_and_clearance_are_kept():
     ignored = simulate(scenario({**BEFORE_IT, **AT_ONCE, "transport.duration": 8.0}, limit=20.0))
     unminded = np.linalg.norm(ignored["position"].values - [5.0, 3.8], axis=-1) - 0.3
     assert unminded.min() < 0.2
+
+
+def test_a_run_that_minds_obstacles_is_compared_with_one_that_meets_none():
+    minding = scenario({**BEFORE_IT, **AT_ONCE}, clearance=0.4)
+    assert felt_obstacles(resolve(minding))
+    assert not felt_obstacles(resolve(scenario({**BEFORE_IT, **AT_ONCE})))
+    short = {"transport.duration": 5.0}
+    apart = simulate(with_overrides(minding, short))["deviation"].values[-1]
+    unminding = simulate(with_overrides(minding, {**short, "consensus.clearance": None}))["position"].values[-1]
+    np.testing.assert_allclose(
+        simulate(with_overrides(minding, short))["position"].values[-1] - apart, unminding, atol=1e-6
+    )
+    assert np.abs(apart).max() > 0.05
 
 
 def test_all_robots_make_the_same_plan():

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strategies import generators
 
+from drake_formation.parts.coordination import planning
 from drake_formation.parts.coordination.half_planes import normals
 from drake_formation.parts.coordination.linear_formation import formation_matrices
 from drake_formation.parts.coordination.planning import Constraints, InfeasibleError, best_plan, constraints
@@ -107,3 +108,16 @@ def test_the_robot_that_cannot_is_named_with_the_obstacle_and_what_is_missing(tw
 def test_without_limits_and_obstacles_nothing_is_asked(two_robots):
     empty = Constraints(np.full(4 * HORIZON, np.inf), np.zeros((HORIZON, 2, 0, 4 * HORIZON)), np.zeros((HORIZON, 2, 0)))
     assert empty.kept_by(np.full(4 * HORIZON, 1e9))
+
+
+def test_a_solver_that_gives_up_is_told_of(two_robots, monkeypatch):
+    monkeypatch.setattr(planning, "_solved", lambda *_: None)
+    errors = np.array([3.0, 0, 0, 0, -1.0, 0, 4.0, 0])
+    with pytest.raises(RuntimeError, match="OSQP finds no plan within force limits"):
+        best_plan(two_robots, errors, about(two_robots, errors, [0.1, 0.1], [], [0.1, 0.1]))
+
+
+def test_the_same_problem_has_the_same_plan(two_robots):
+    errors = np.array([-3, 0.2, 0, 0, 3, 0.4, 0, 0])
+    kept = about(two_robots, errors, [2.0, 2.0], [[0.0, -0.3, 0.2]], [0.1, 0.3])
+    np.testing.assert_array_equal(best_plan(two_robots, errors, kept), best_plan(two_robots, errors, kept))

@@ -20,6 +20,20 @@ OWN = "drake-formation"
 """The distribution of this package's own parts."""
 
 
+class PartFailedError(ArithmeticError):
+    """A part that cannot go on in the middle of a run; the message says why.
+
+    Attributes:
+        robot: whose part, from 1.
+        advice: what to try.
+    """
+
+    def __init__(self, message: str, robot: int, advice: str) -> None:
+        super().__init__(message)
+        self.robot = robot
+        self.advice = advice
+
+
 class Part:
     """What the diagram knows of a box; subclasses are registered by :func:`drake_formation.parts.part`.
 

@@ -84,7 +84,7 @@ def steps(scenario: Scenario, duration: float, *, carrying: bool) -> float:
     stiffness, damping = _largest_rates(resolve(scenario), carrying)
     fastest = float(np.sqrt(stiffness))
     accurate = ACCURATE * (settings.accuracy / 1e-6) ** 0.2
-    ringing = min(duration, FADED / damping)
+    ringing = min(duration, FADED / damping) if damping else duration
     fewest = max(1 / settings.max_step_size, max(fastest, damping) / STABLE)
     return float(duration * fewest + ringing * fastest / accurate)
 

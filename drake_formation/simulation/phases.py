@@ -22,10 +22,10 @@ def simulated_duration(scenario: Scenario) -> float:
 
 
 def felt_obstacles(formation: Formation) -> bool:
-    """Whether any obstacle may exert a force."""
-    return bool(len(formation.obstacles)) and any(
-        getattr(part.config, "gain", 1.0) > 0 for part in formation.parts["avoidance"]
-    )
+    """Whether any obstacle may change a force: by avoidance, or by coordination that keeps a clearance."""
+    pushed = any(getattr(part.config, "gain", 1.0) > 0 for part in formation.parts["avoidance"])
+    kept = any(getattr(part.config, "clearance", None) is not None for part in formation.parts["coordination"])
+    return bool(len(formation.obstacles)) and (pushed or kept)
 
 
 def without_obstacles(formation: Formation) -> Formation:

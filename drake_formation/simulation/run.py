@@ -17,6 +17,7 @@ from drake_formation.parameters import (
     write_parameters,
     write_start,
 )
+from drake_formation.parts.part import PartFailedError
 from drake_formation.scenario import Scenario, resolve
 from drake_formation.simulation.choice import Choice, choose
 from drake_formation.simulation.clearance import contact
@@ -220,14 +221,10 @@ class PreparedRun:
     def _simulation_error(self, failed: Engine, series: Series, failure: BaseException) -> SimulationError:
         """Say when, which robot, why and what to try."""
         time = failed.recording.times[-1] if len(failed.recording.times) else failed.context.get_time()
-        robot = self._culprit(failed)
-        reasons: dict[type[BaseException], str] = {
-            NonFiniteStateError: "its state is no longer finite",
-            ZeroDivisionError: "it met another robot",
-            OverflowError: "its forces grew beyond all bounds",
-        }
-        reason = reasons.get(type(failure), f"the integrator gave up ({failure})")
-        advice = _advice(series.scenario, failed)
+        if isinstance(failure, PartFailedError):
+            robot, reason, advice = failure.robot, str(failure), failure.advice
+        else:
+            robot, reason, advice = self._culprit(failed), _reason(failure), _advice(series.scenario, failed)
         message = f"the run stopped at t = {time:.6g} s at robot {robot}: {reason}. Try {advice}."
         return SimulationError(message, float(time), robot, labelled_result(series))
 
@@ -273,6 +270,15 @@ def _inside(time: float, robot: int, obstacle: int, series: Series) -> Simulatio
 
 # Drake's own complaints, and Python's from the laws: coincident robots divide by zero.
 _FAILURES = (RuntimeError, ArithmeticError, SystemExit)
+
+
+def _reason(failure: BaseException) -> str:
+    reasons: dict[type[BaseException], str] = {
+        NonFiniteStateError: "its state is no longer finite",
+        ZeroDivisionError: "it met another robot",
+        OverflowError: "its forces grew beyond all bounds",
+    }
+    return reasons.get(type(failure), f"the integrator gave up ({failure})")
 
 
 def _advice(scenario: Scenario, run: Engine) -> str:

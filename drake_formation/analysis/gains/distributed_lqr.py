@@ -1,21 +1,7 @@
-"""Distributed LQR for identical, dynamically decoupled systems (Borrelli and Keviczky, 2008).
+"""A distributed LQR for the formation's communication graph, judged with the object's springs.
 
-For N_L systems ẋ = A x + B u that all see each other, the cost
-
-    ∫ Σ_i (x_iᵀ Q₁ x_i + u_iᵀ R u_i) + Σ_{i<j} (x_i − x_j)ᵀ Q₂ (x_i − x_j) dt
-
-is minimal with u_i = −K₁ x_i − K₂ Σ_j (x_i − x_j). By symmetry its Riccati equation falls apart into two of one
-system's size: K₁ belongs to (Q₁, R), and K₁ + N_L K₂ to (Q₁ + N_L Q₂, R) (their Theorem 1, with N_L P̃₂ = P₁ − P₂ for
-the solutions P₁ and P₂ of the two). For a graph of more systems whose degrees are at most d, N_L = d + 1 and the gain
-is
-
-    K = I ⊗ K₁ + M ⊗ K₂,  M = a L (L the graph's Laplacian),
-
-which is stable if every eigenvalue of M but the zero is above N_L/2 (their Theorem 3: an LQR has infinite gain margin
-upwards and one half downwards). Exactly, it is stable if A − B (K₁ + μ K₂) is for every eigenvalue μ of M.
-
-Source: F. Borrelli and T. Keviczky, "Distributed LQR design for identical dynamically decoupled systems", IEEE
-Transactions on Automatic Control 53(8), 2008.
+The design is :mod:`drake_formation.parts.coordination.distributed_gains` (Borrelli and Keviczky, 2008): K = I ⊗ K₁ +
+M ⊗ K₂ with M = a L.
 """
 
 from dataclasses import dataclass
@@ -28,6 +14,7 @@ from drake_formation.analysis.linear.assumptions import same_lqr
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.analysis.linear.linearization import STATES, LinearFormation
 from drake_formation.analysis.linear.well_posed import require_agreement
+from drake_formation.parts.coordination.distributed_gains import decay_rate, distributed_gains
 from drake_formation.parts.tracking.lqr import cost_matrix, lqr_gain
 
 Array = NDArray[np.float64]
@@ -123,34 +110,31 @@ def distributed_lqr(
     masses, lqr = formation.resolved.masses, same_lqr(formation.resolved)
     state_cost, input_cost = lqr.state_cost, lqr.input_cost
     between = _relative_cost(state_cost if relative_cost is None else cost_matrix(relative_cost, STATES))
-    spectrum = np.linalg.eigvalsh(formation.laplacian)
-    systems = round(float(np.diag(formation.laplacian).max())) + 1
-
-    local = lqr_gain(masses[0], state_cost, input_cost)
-    joint = lqr_gain(masses[0], state_cost + systems * between, input_cost)
-    relative = (joint - local) / systems
-    sufficient = systems / (2 * spectrum[1])
-    scale = _scale(scale, sufficient, [plant - force @ (local + mu * relative) for mu in spectrum])
-    gains = [local + scale * mu * relative for mu in spectrum]
-    decay = min(_decay(plant - force @ gain) for gain in gains)
-    if decay <= 0:
+    if scale is not None and not (np.isfinite(scale) and scale > 0):
+        raise IllPosedError(f"the scale a of M = a L is above 0 and finite; {scale:g} is not")
+    found = distributed_gains(
+        masses[0], formation.laplacian, state_cost, input_cost, between, scale=scale, plant=(plant, force)
+    )
+    if found.decay <= 0:
         raise IllPosedError(
-            f"with a = {scale:g} the spectrum of the graph leaves a mode unstable even without springs; the theorem "
-            f"asks for more than {sufficient:.6g}"
+            f"with a = {found.scale:g} the spectrum of the graph leaves a mode unstable even without springs; the "
+            f"theorem asks for more than {found.sufficient_scale:.6g}"
         )
-    coupled = np.kron(formation.laplacian, force @ (scale * relative))
-    delta, delta_v = _isotropic(scale * relative)
+    coupled = np.kron(formation.laplacian, force @ found.relative)
+    delta, delta_v = _isotropic(found.relative)
+    spectrum = np.linalg.eigvalsh(formation.laplacian)
+    gains = [found.local + mu * found.relative for mu in spectrum]
     costs = [state_cost + mu * between for mu in spectrum]
     optimal = [lqr_gain(masses[0], cost, input_cost) for cost in costs]
     return DistributedLqr(
-        K1=local,
-        K2=scale * relative,
-        systems=systems,
+        K1=found.local,
+        K2=found.relative,
+        systems=found.systems,
         relative_cost=between,
-        scale=scale,
-        sufficient_scale=float(sufficient),
-        decay_without_springs=decay,
-        decay_with_springs=_decay(formation.tracking + formation.springs - coupled),
+        scale=found.scale,
+        sufficient_scale=found.sufficient_scale,
+        decay_without_springs=found.decay,
+        decay_with_springs=decay_rate(formation.tracking + formation.springs - coupled),
         delta=delta,
         delta_v=delta_v,
         cost=sum(_cost(plant, force, gain, cost, input_cost) for gain, cost in zip(gains, costs, strict=True)),
@@ -194,14 +178,6 @@ def _relative_cost(cost: Array) -> Array:
     return cost
 
 
-def _scale(scale: float | None, sufficient: float, loops_at_one: list[Array]) -> float:
-    if scale is not None:
-        if not (np.isfinite(scale) and scale > 0):
-            raise IllPosedError(f"the scale a of M = a L is above 0 and finite; {scale:g} is not")
-        return scale
-    return 1.0 if all(_decay(loop) > 0 for loop in loops_at_one) else 1.01 * float(sufficient)
-
-
 def _isotropic(gain: Array) -> tuple[float | None, float | None]:
     """δ and δ_v of [δ I, δ_v I], where a gain is that and a scenario takes it."""
     delta, delta_v = float(gain[0, 0]), float(gain[0, 2])
@@ -210,10 +186,6 @@ def _isotropic(gain: Array) -> tuple[float | None, float | None]:
     if np.abs(gain - plain).max() > rounding or min(delta, delta_v) < -rounding:
         return None, None
     return max(delta, 0.0), max(delta_v, 0.0)
-
-
-def _decay(loop: Array) -> float:
-    return float(-np.linalg.eigvals(loop).real.max())
 
 
 def _cost(plant: Array, force: Array, gain: Array, state_cost: Array, input_cost: Array) -> float:

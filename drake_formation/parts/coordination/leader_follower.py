@@ -12,8 +12,8 @@ from pydrake.systems.framework import BasicVector_, LeafSystem_
 from drake_formation.config.errors import Fault, shortened, shown
 from drake_formation.formation.formation import Formation
 from drake_formation.formation.links import Channels
+from drake_formation.parts.coordination.local_weights import LocalWeights
 from drake_formation.parts.coordination.none import NoForce
-from drake_formation.parts.coordination.weights import Weights
 from drake_formation.parts.part import Numbers, Part
 from drake_formation.parts.registry import part
 from drake_formation.parts.tracking.lqr import lqr_gain, tracking_force
@@ -97,7 +97,7 @@ class LeaderFollower(Part):
     and Automation 17(6), 2001). The gain is that of the local LQR (paper, Eqs. 11-12), with weights of its own.
     """
 
-    class Config(Weights):
+    class Config(LocalWeights):
         """Who leads, and the weights by which others follow."""
 
         leader: Annotated[int, Field(ge=1)] = Field(default=1, description="number of the robot that leads, from 1")

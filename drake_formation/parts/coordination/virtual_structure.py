@@ -11,7 +11,7 @@ from pydrake.systems.framework import BasicVector_, LeafSystem_
 from drake_formation.config.errors import Fault
 from drake_formation.config.values import NonNegative, Positive
 from drake_formation.formation.formation import Formation
-from drake_formation.parts.coordination.weights import Weights
+from drake_formation.parts.coordination.local_weights import LocalWeights
 from drake_formation.parts.part import Array, Numbers, Part
 from drake_formation.parts.registry import part
 from drake_formation.parts.tracking.lqr import feed_forward_force, lqr_gain, tracking_force
@@ -154,7 +154,7 @@ VirtualStructureController = in_double(VirtualStructureController_)
 class VirtualStructure(Part):
     """A virtual structure with formation feedback, a copy in every robot (Ren and Beard 2004); tracking is ``none``."""
 
-    class Config(Weights):
+    class Config(LocalWeights):
         """How the structure moves, and the weights by which robots keep their places in it."""
 
         k_goal: Positive = Field(

@@ -139,7 +139,7 @@ class Lqr(Part):
 
     def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:
         """Whether the weights give a gain that brings the robot to its set point."""
-        faults = [*_state_cost(self.config.Q), *_input_cost(self.config.R)]
+        faults = [*state_cost_faults(self.config.Q), *input_cost_faults(self.config.R)]
         yield from faults
         mass = float(formation.masses[owner])
         # Weights that are sound one by one may still be too far apart for Drake to solve (paper, Eq. 12).
@@ -163,14 +163,15 @@ _ROUNDING = 1e-12
 """Relative size of what rounding leaves of a zero."""
 
 
-def _state_cost(value: Any) -> Iterator[Fault]:
+def state_cost_faults(value: Any) -> Iterator[Fault]:
+    """What is wrong with a robot's state cost, given as ``Q``; see :func:`cost_matrix`."""
     path = ("Q",)
     allowed = "symmetric, positive semi-definite 4 x 4, weighting both positions"
-    if faults := list(_matrix(path, value, 4, allowed)):
+    if faults := list(matrix_faults(path, value, 4, allowed)):
         yield from faults
         return
     cost = _scaled(cost_matrix(value, 4))
-    if np.linalg.eigvalsh(cost)[0] < -_ROUNDING:
+    if not is_semidefinite(cost):
         yield Fault(path, "not positive semi-definite", shown(value), allowed)
     elif np.linalg.eigvalsh(cost[:2, :2])[0] <= 0:
         # A robot at rest anywhere is an equilibrium of the plant. If it costs nothing, (A, Q) is not
@@ -178,17 +179,18 @@ def _state_cost(value: Any) -> Iterator[Fault]:
         yield Fault(path, "a position costs nothing, so the mode at 0 is not detectable", shown(value), allowed)
 
 
-def _input_cost(value: Any) -> Iterator[Fault]:
+def input_cost_faults(value: Any) -> Iterator[Fault]:
+    """What is wrong with a robot's input cost, given as ``R``; see :func:`cost_matrix`."""
     path = ("R",)
     allowed = "symmetric, positive definite 2 x 2"
-    if faults := list(_matrix(path, value, 2, allowed)):
+    if faults := list(matrix_faults(path, value, 2, allowed)):
         yield from faults
     elif np.linalg.eigvalsh(_scaled(cost_matrix(value, 2)))[0] <= 0:
         yield Fault(path, "not positive definite", shown(value), allowed)
 
 
-def _matrix(path: tuple[str], value: Any, size: int, allowed: str) -> Iterator[Fault]:
-    """Size and symmetry of a cost."""
+def matrix_faults(path: tuple[str], value: Any, size: int, allowed: str) -> Iterator[Fault]:
+    """Whether a cost has so many rows and columns and is symmetric."""
     if not isinstance(value, tuple):
         return
     if not (value and isinstance(value[0], tuple)):
@@ -216,6 +218,11 @@ def _stabilizes(mass: float, state_cost: Any, input_cost: Any) -> bool:
             return False
         closed_loop = a - b @ gain
     return bool(np.isfinite(closed_loop).all() and np.linalg.eigvals(closed_loop).real.max() < 0)
+
+
+def is_semidefinite(cost: Array) -> bool:
+    """Whether a symmetric cost is positive semi-definite, up to rounding."""
+    return bool(np.linalg.eigvalsh(_scaled(cost))[0] >= -_ROUNDING)
 
 
 def _scaled(cost: Array) -> Array:

@@ -118,8 +118,11 @@ def robot_diagram(formation: Formation, robot: int) -> Diagram:
     for k, controller in enumerate(controllers):
         builder.Connect(controller.GetOutputPort("force"), control.get_input_port(k))
         builder.ExportOutput(controller.GetOutputPort("force"), f"{controller.get_name()}_force")
-    for block in asked.pop("state", ()):
-        builder.Connect(plant.GetOutputPort("state"), block.GetInputPort("state"))
+    for name in ("state", "spring_force"):
+        for block in asked.pop(name, ()):
+            builder.Connect(plant.GetOutputPort(name), block.GetInputPort(name))
+    if filters := asked.pop("nominal", ()):
+        _connect_nominal(builder, [block for block in controllers if block not in filters], filters)
     for block in asked.pop("force", ()):
         builder.Connect(control.get_output_port(), block.GetInputPort("force"))
     for name in sorted(asked, key=_port_order):
@@ -133,6 +136,15 @@ def robot_diagram(formation: Formation, robot: int) -> Diagram:
     builder.ExportOutput(controllers[0].GetOutputPort("error"), "tracking_error")
     builder.ExportOutput(control.get_output_port(), "control_force")
     return builder.Build()
+
+
+def _connect_nominal(builder: DiagramBuilder, others: list[System], filters: Iterable[System]) -> None:
+    """Give to the controllers that correct the others' control what those ask for."""
+    nominal = builder.AddNamedSystem("nominal", Adder(len(others), 2))
+    for k, controller in enumerate(others):
+        builder.Connect(controller.GetOutputPort("force"), nominal.get_input_port(k))
+    for block in filters:
+        builder.Connect(nominal.get_output_port(), block.GetInputPort("nominal"))
 
 
 def _added(

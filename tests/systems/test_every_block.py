@@ -7,6 +7,7 @@ import pytest
 from pydrake.autodiffutils import AutoDiffXd, ExtractGradient, ExtractValue
 from pydrake.symbolic import Evaluate, Expression, Variable
 
+from drake_formation.parts.avoidance.barrier import BarrierFilter
 from drake_formation.parts.avoidance.khatib import ObstacleAvoidance
 from drake_formation.parts.coordination.consensus import ConsensusController
 from drake_formation.parts.references.set_point import SetPoint
@@ -34,6 +35,8 @@ MAKERS = {
     "avoidance": lambda: ObstacleAvoidance([2.0, 30.0], OBSTACLES),
     "masked avoidance": lambda: ObstacleAvoidance([2.0, 30.0], OBSTACLES, masked=True),
     "avoidance without obstacles": lambda: ObstacleAvoidance([2.0, 30.0], np.zeros((0, 3))),
+    "barrier": lambda: BarrierFilter([40.0, 0.3, 2.0, 20.0], OBSTACLES),
+    "barrier without obstacles": lambda: BarrierFilter([40.0, 0.3, 2.0, 20.0], np.zeros((0, 3))),
     "sensing": lambda: NearestSensing(3, [[1.0, 1.0], [-1.0, 0.5]]),
     "sensing without obstacles": lambda: NearestSensing(2, np.zeros((0, 2))),
     "consensus error": lambda: ConsensusError([[0.0, 0.5], [0.5, -0.5], [-0.5, -0.5]]),

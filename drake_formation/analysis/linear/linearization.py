@@ -180,8 +180,7 @@ def at_rest(scenario: Scenario) -> Scenario:
             "aggregation.duration": 0.0,
             "robots.start": {"centre": list(scenario.transport.goal)},
             "transport.reference": {"kind": "set_point"},
-            "avoidance.obstacles": [],
-            "avoidance.sensing": "in_range",
+            "avoidance": {"obstacles": []},
         },
     )
 

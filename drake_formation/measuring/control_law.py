@@ -74,7 +74,9 @@ class ControlLaw:
         self._gathered = np.eye(formation.robots)[listeners]
         self._range, self._gain = np.array([group[0] for group in own["avoidance"]]).T
         self._obstacles = formation.obstacles
-        self._masked = np.array([part.config.sensing == "nearest" for part in formation.parts["avoidance"]])
+        fields = formation.parts["avoidance"]
+        self._masked = np.array([field.masked for field in fields])
+        self._feels = np.array([field.feels(formation, i) for i, field in enumerate(fields)], dtype=float)
         self._reference = numbers["reference"]
         self._set_point = isinstance(formation.parts["reference"][0], SetPointReference)
 
@@ -115,11 +117,11 @@ class ControlLaw:
     def _avoid(self, position: Array) -> Array:
         """The sum of what the sensed obstacles exert."""
         result = np.zeros_like(position)
-        for x, y, radius in self._obstacles:
+        for (x, y, radius), feels in zip(self._obstacles, self._feels.T, strict=True):
             dx, dy = position[..., 0] - x, position[..., 1] - y
             with np.errstate(divide="ignore", invalid="ignore"):  # in its middle, where no run goes on
                 force = np.stack(avoidance_force(dx, dy, radius, self._range, self._gain), axis=-1)
-            result += self._sensed(dx * dx + dy * dy)[..., None] * force
+            result += (feels * self._sensed(dx * dx + dy * dy))[..., None] * force
         return result
 
     def _sensed(self, squared_distances: Array) -> Array:

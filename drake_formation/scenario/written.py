@@ -73,7 +73,7 @@ class PartOf:
 def written(part: Any, shared: Any) -> type[Section]:
     """The section of one kind as it is written: its fields may also be given for each robot or edge."""
     role = ROLES[part.role]
-    kind = Field(description=f"kind of {role.name}") if role.owner == "formation" else _kind_field(role, part.kind)
+    kind = _kind_field(role, part.kind)
     name = "".join(word.capitalize() for word in (part.kind + "_" + role.name).split("_"))
     fields: dict[str, Any] = {role.chooser: (Literal[part.kind], kind)}
     fields |= {name: (_own(info), _field(info)) for name, info in shared.model_fields.items()}
@@ -141,4 +141,7 @@ def _field(info: FieldInfo) -> Any:
 
 def _kind_field(role: Role, kind: str) -> Any:
     descriptions = {"spring": "how the object acts: hookean along the line (Eq. 2), linear as the paper's Eqs. 4-7"}
-    return Field(default=kind, description=descriptions.get(role.name, f"kind of {role.name}"))
+    description = descriptions.get(role.name, f"kind of {role.name}")
+    if role.owner == "formation" or kind != role.default:
+        return Field(description=description)  # a section without one is of the default kind
+    return Field(default=kind, description=description)

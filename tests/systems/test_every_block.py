@@ -9,6 +9,7 @@ from pydrake.symbolic import Evaluate, Expression, Variable
 
 from drake_formation.parts.avoidance.barrier import BarrierFilter
 from drake_formation.parts.avoidance.khatib import ObstacleAvoidance
+from drake_formation.parts.avoidance.rotational import rotational_force
 from drake_formation.parts.coordination.consensus import ConsensusController
 from drake_formation.parts.references.set_point import SetPoint
 from drake_formation.parts.robots.point_mass import RobotPlant
@@ -35,6 +36,7 @@ MAKERS = {
     "avoidance": lambda: ObstacleAvoidance([2.0, 30.0], OBSTACLES),
     "masked avoidance": lambda: ObstacleAvoidance([2.0, 30.0], OBSTACLES, masked=True),
     "avoidance without obstacles": lambda: ObstacleAvoidance([2.0, 30.0], np.zeros((0, 3))),
+    "rotational avoidance": lambda: ObstacleAvoidance([2.0, 0.8, 0.6, 30.0], OBSTACLES, False, rotational_force),
     "barrier": lambda: BarrierFilter([40.0, 0.3, 2.0, 20.0], OBSTACLES),
     "barrier without obstacles": lambda: BarrierFilter([40.0, 0.3, 2.0, 20.0], np.zeros((0, 3))),
     "sensing": lambda: NearestSensing(3, [[1.0, 1.0], [-1.0, 0.5]]),

@@ -84,16 +84,16 @@ class Barrier(Part):
     class Config(Section):
         """What it keeps, and how."""
 
-        clearance: Length = Field(default=0.3, description="least distance d to any obstacle (m); chosen: 0.3")
+        clearance: Length = Field(default=0.3, description="clearance d (m), the least to any obstacle; chosen: 0.3")
         rate: Positive = Field(
             default=1.0,
-            description="rate λ at which the robot may use up the distance it has to spare (1/s), the larger the later "
-            "and the harder it brakes; chosen: 1",
+            description="rate λ (1/s) at which the robot may use up the distance that it has to spare; the larger, the "
+            "later and the harder it brakes; chosen: 1",
         )
         sharpness: Positive = Field(
             default=20.0,
-            description="sharpness κ of the smooth minimum over M obstacles (1/m), which keeps up to ln(M)/κ more than "
-            "the clearance; chosen: 20",
+            description="sharpness κ (1/m) of the smooth minimum, which among M obstacles keeps ln(M)/κ more than the "
+            "clearance at the most; chosen: 20",
         )
 
     def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:

@@ -1,0 +1,70 @@
+"""What force fields around obstacles have in common: their range and strength, and which robot feels which obstacle."""
+
+from collections.abc import Hashable, Iterator
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from drake_formation.config.errors import Fault, shown
+from drake_formation.config.values import Length, NonNegative, Section
+from drake_formation.formation.formation import Formation
+from drake_formation.parts.part import Part
+
+Robots = Annotated[tuple[int, ...], Field(strict=False)]
+"""Numbers of robots, from 1."""
+
+
+class FieldConfig(Section):
+    """Range and strength of a field, and who feels it."""
+
+    range: Length = Field(default=1.3, description="sensing range ρ0 (m); inferred: 1.3")
+    gain: NonNegative = Field(default=31.56, description="repulsive gain η (N m²); inferred: 31.56")
+    sensing: Literal["in_range", "nearest", "assigned"] = Field(
+        default="in_range",
+        description="in_range: every robot within range feels an obstacle; nearest: only the one nearest to it, "
+        "not with the engine exponential; robots that stay equally near feel it in turns, in very short steps; "
+        "assigned: only the one that assigned names",
+    )
+    assigned: Robots = Field(
+        default=(), description="with sensing assigned, for each obstacle the number of the robot that feels it"
+    )
+
+
+class SensedField(Part):
+    """A field around obstacles that some robots sense; its configuration is a :class:`FieldConfig`."""
+
+    def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:  # noqa: ARG002
+        """Whether every obstacle is assigned to a robot that there is."""
+        if self.config.sensing != "assigned":
+            return
+        assigned, count = self.config.assigned, len(formation.obstacles)
+        allowed = f"{count} numbers of robots from 1 to {formation.robots}, one an obstacle"
+        if len(assigned) != count:
+            yield Fault(("assigned",), f"{len(assigned)} robots for {count} obstacles", shown(assigned), allowed)
+        for index, robot in enumerate(assigned):
+            if not 1 <= robot <= formation.robots:
+                yield Fault(("assigned", index), f"there is no robot {robot}", shown(robot), allowed)
+
+    def structure(self) -> Hashable:
+        """Who feels an obstacle."""
+        sensing: str = self.config.sensing
+        return sensing
+
+    @property
+    def masked(self) -> bool:
+        """Whether it depends on where the others are, and so on the input port ``sensed``, what the robot feels."""
+        return bool(self.config.sensing == "nearest")
+
+    def feels(self, formation: Formation, owner: int) -> NDArray[np.bool_]:
+        """Which obstacles the robot feels as far as they are sensed, shape (obstacles,)."""
+        if self.config.sensing != "assigned":
+            return np.ones(len(formation.obstacles), dtype=bool)
+        feels: NDArray[np.bool_] = np.array(self.config.assigned, dtype=int) == owner + 1
+        return feels
+
+    def felt(self, formation: Formation, owner: int) -> NDArray[np.float64]:
+        """Centre and radius of those obstacles (m), shape (felt, 3)."""
+        felt: NDArray[np.float64] = formation.obstacles[self.feels(formation, owner)]
+        return felt

@@ -16,6 +16,7 @@ from drake_formation.parts.robots.point_mass import RobotPlant
 from drake_formation.parts.springs.hookean import Hookean
 from drake_formation.parts.springs.linear import Linear
 from drake_formation.parts.tracking.controller import TrackingController
+from drake_formation.parts.tracking.integral_controller import IntegralController
 from drake_formation.parts.tracking.lqr import lqr_force
 from drake_formation.systems.consensus_error import ConsensusError
 from drake_formation.systems.hand_off import HandOff
@@ -31,6 +32,7 @@ MAKERS = {
     "tracking": lambda: TrackingController(
         lqr_force, [[[1.0, 0.1, 9.0, 0.2], [0.3, 1.0, 0.4, 9.0]], [0.0]], [0.5, -0.5]
     ),
+    "integral tracking": lambda: IntegralController(np.arange(12.0).reshape(2, 6), [40.0], [0.5, -0.5]),
     "consensus": lambda: ConsensusController([2, 5], [100.0, 7.0], [[1.0, 0.0], [0.0, -1.0]]),
     "consensus without channels": lambda: ConsensusController([], [100.0, 7.0], np.zeros((0, 2))),
     "avoidance": lambda: ObstacleAvoidance([2.0, 30.0], OBSTACLES),

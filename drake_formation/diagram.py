@@ -15,6 +15,7 @@ from drake_formation.parts.roles import CONTROLLERS, ROLES, Role
 from drake_formation.scenario import Scenario, resolve
 from drake_formation.systems.consensus_error import ConsensusError
 from drake_formation.systems.hand_off import HandOff
+from drake_formation.systems.holding_sensing import HoldingSensing
 from drake_formation.systems.sensing import NearestSensing
 
 ROBOT_OUTPUTS = (
@@ -208,8 +209,9 @@ def _talk(
 
 
 def _sense_nearest(builder: DiagramBuilder, robots: list[Diagram], parameters: Parameters) -> None:
-    (centres,) = parameters["sensing"]
-    sensing = builder.AddNamedSystem("sensing", NearestSensing(len(robots), centres))
+    centres, *margin = parameters["sensing"]
+    block = HoldingSensing(len(robots), centres, *margin) if margin else NearestSensing(len(robots), centres)
+    sensing = builder.AddNamedSystem("sensing", block)
     for i, robot in enumerate(robots):
         builder.Connect(robot.GetOutputPort("state"), sensing.get_input_port(i))
         if "sensed" in _input_names(robot):

@@ -24,8 +24,14 @@ class FieldConfig(Section):
     sensing: Literal["in_range", "nearest", "assigned"] = Field(
         default="in_range",
         description="in_range: every robot within range feels an obstacle; nearest: only the one nearest to it, "
-        "not with the engine exponential; robots that stay equally near feel it in turns, in very short steps; "
+        "with margin 0 not with the engine exponential, and robots that stay equally near feel it in turns, in very "
+        "short steps; "
         "assigned: only the one that assigned names",
+    )
+    margin: NonNegative = Field(
+        default=0.0,
+        description="margin (m) by which, with sensing nearest, another robot must be nearer to an obstacle to feel it "
+        "instead, compared every 0.05 s; 0 hands it over at once, at any time",
     )
     assigned: Robots = Field(
         default=(), description="with sensing assigned, for each obstacle the number of the robot that feels it"
@@ -36,9 +42,15 @@ class SensedField(Part):
     """A field around obstacles that some robots sense; its configuration is a :class:`FieldConfig`."""
 
     def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:  # noqa: ARG002
-        """Whether every obstacle is assigned to a robot that there is."""
-        if self.config.sensing != "assigned":
-            return
+        """Whether every obstacle is assigned to a robot that there is, and all robots compare by one margin."""
+        if self.config.sensing == "assigned":
+            yield from self._assignment_faults(formation)
+        margins = {part.margin for part in formation.parts["avoidance"] if getattr(part, "masked", False)}
+        if self.masked and len(margins) > 1:
+            values = shown(sorted(margins))
+            yield Fault(("margin",), "robots that compare distances have different margins", values, "one for all")
+
+    def _assignment_faults(self, formation: Formation) -> Iterator[Fault]:
         assigned, count = self.config.assigned, len(formation.obstacles)
         allowed = f"{count} numbers of robots from 1 to {formation.robots}, one an obstacle"
         if len(assigned) != count:
@@ -48,14 +60,18 @@ class SensedField(Part):
                 yield Fault(("assigned", index), f"there is no robot {robot}", shown(robot), allowed)
 
     def structure(self) -> Hashable:
-        """Who feels an obstacle."""
-        sensing: str = self.config.sensing
-        return sensing
+        """Who feels an obstacle, and whether that depends on the past."""
+        return self.config.sensing, self.margin > 0
 
     @property
     def masked(self) -> bool:
         """Whether it depends on where the others are, and so on the input port ``sensed``, what the robot feels."""
         return bool(self.config.sensing == "nearest")
+
+    @property
+    def margin(self) -> float:
+        """How much nearer another robot must be to take over (m); 0 where that plays no part."""
+        return float(self.config.margin) if self.masked else 0.0
 
     def feels(self, formation: Formation, owner: int) -> NDArray[np.bool_]:
         """Which obstacles the robot feels as far as they are sensed, shape (obstacles,)."""

@@ -1,6 +1,6 @@
 """Local collision avoidance of one robot: Khatib's artificial potential field."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,7 @@ SURFACE = 1e-50
 """The least clearance that counts (m), so small that the force there, some 1e150 N, outlasts every shorter step."""
 
 FieldLaw = Callable[..., tuple[Scalar, Scalar]]
-"""``law(dx, dy, radius, *numbers, gain)``: the force (N) on a robot at (dx, dy) from an obstacle's centre (m)."""
+"""``law(dx, dy, radius, range, *numbers, gain)``: force (N) on a robot at (dx, dy) from an obstacle's centre (m)."""
 
 
 def avoidance_force(
@@ -53,10 +53,11 @@ def ObstacleAvoidance_(T: Any) -> Any:  # noqa: N802 - Drake's name for a templa
     class Impl(LeafSystem_[T]):  # type: ignore[misc]
         """The avoidance control of one robot: the sum of what its sensed obstacles exert during transport.
 
-        Input ports: ``state`` (size 4), ``phase`` (0 aggregation, 1 transport: obstacles are felt) and, with masked
-        sensing, ``sensed`` (1 for each obstacle this robot is allowed to see, else 0). Output port: ``force`` (N,
-        size 2). Parameters: 0, the law's numbers and gain, for Khatib's [ρ0, η] (m, N m²); 1, for each obstacle its
-        centre and radius (m, three numbers).
+        Input ports: ``state`` (size 4), ``phase`` (0 aggregation, 1 transport: obstacles are felt), with masked
+        sensing ``sensed`` (1 for each obstacle this robot is allowed to see, else 0), and per robot j that it keeps
+        away from, in both phases, ``channel_j`` (the state it sends, size 4). Output port: ``force`` (N, size 2).
+        Parameters: 0, the law's numbers and gain, for Khatib's [ρ0, η] (m, N m²); 1, for each obstacle its centre and
+        radius (m, three numbers); and where it keeps away from robots 2, the range of the field around them (m).
         """
 
         def _construct(
@@ -65,6 +66,8 @@ def ObstacleAvoidance_(T: Any) -> Any:  # noqa: N802 - Drake's name for a templa
             obstacles: ArrayLike,
             masked: bool = False,
             law: FieldLaw = avoidance_force,
+            neighbours: Sequence[int] = (),
+            spacing: ArrayLike | None = None,
             *,
             converter: Any = None,
         ) -> None:
@@ -75,10 +78,12 @@ def ObstacleAvoidance_(T: Any) -> Any:  # noqa: N802 - Drake's name for a templa
                 obstacles: centre and radius of each obstacle (m), shape (obstacles, 3).
                 masked: declare the port ``sensed``.
                 law: force of one obstacle; in proportion to the gain, and none without.
+                neighbours: numbers of the robots it keeps away from (from 1), which name the channel ports.
+                spacing: range of the field around those robots (m), shape (1,); None where there are none.
                 converter: for Drake's scalar conversion.
             """
             LeafSystem_[T].__init__(self, converter=converter)
-            self.arguments = (field, obstacles, masked, law)
+            self.arguments = (field, obstacles, masked, law, neighbours, spacing)
             self.kind = (masked, law)  # all else that it computes with is a parameter
             count = len(np.reshape(obstacles, (-1, 3)))
             self._law = law
@@ -86,9 +91,12 @@ def ObstacleAvoidance_(T: Any) -> Any:  # noqa: N802 - Drake's name for a templa
             self._everything = [1.0] * count
             self._state = self.DeclareVectorInputPort("state", 4)
             self._phase = self.DeclareVectorInputPort("phase", 1)
+            self._channels = [self.DeclareVectorInputPort(f"channel_{j}", 4) for j in neighbours]
             self._sensed = self.DeclareVectorInputPort("sensed", count) if masked else None
             self.DeclareNumericParameter(BasicVector_[T](field))
             self.DeclareNumericParameter(BasicVector_[T](np.ravel(obstacles)))
+            if spacing is not None:
+                self.DeclareNumericParameter(BasicVector_[T](spacing))
             self.DeclareVectorOutputPort(
                 "force", 2, self._calc_force, {self.all_input_ports_ticket(), self.all_parameters_ticket()}
             )
@@ -107,6 +115,11 @@ def ObstacleAvoidance_(T: Any) -> Any:  # noqa: N802 - Drake's name for a templa
                 # What is not felt has no gain: inside an obstacle the force is too large to be multiplied away.
                 gx, gy = self._law(x - ox, y - oy, radius, *numbers, phase * seen * gain)
                 fx, fy = fx + gx, fy + gy  # += would change an Expression in place
+            for port in self._channels:
+                nx, ny, _, _ = port.Eval(context).tolist()
+                (spacing,) = context.get_numeric_parameter(2).CopyToVector().tolist()
+                gx, gy = self._law(x - nx, y - ny, 0.0, spacing, *numbers[1:], gain)
+                fx, fy = fx + gx, fy + gy
             output.SetFromVector(np.array([fx, fy]))
 
     return Impl
@@ -123,8 +136,10 @@ class Khatib(SensedField):
 
     def numbers(self, formation: Formation, owner: int) -> Numbers:
         """The field's range and gain, and the obstacles."""
-        return np.array([self.config.range, self.config.gain]), self.felt(formation, owner)
+        return np.array([self.config.range, self.config.gain]), self.felt(formation, owner), *self.spacing()
 
-    def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:  # noqa: ARG002
+    def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:
         """The controller."""
-        return ObstacleAvoidance(*numbers, self.masked)
+        field, obstacles, *spacing = numbers
+        others = self.neighbours(formation, owner)
+        return ObstacleAvoidance(field, obstacles, self.masked, avoidance_force, others, *spacing)

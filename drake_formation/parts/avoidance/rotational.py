@@ -58,8 +58,10 @@ class Rotational(SensedField):
         """The field's range, direction and gain, and the obstacles."""
         angle = np.deg2rad(self.config.angle)
         field = np.array([self.config.range, np.cos(angle), np.sin(angle), self.config.gain])
-        return field, self.felt(formation, owner)
+        return field, self.felt(formation, owner), *self.spacing()
 
-    def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:  # noqa: ARG002
+    def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:
         """The controller."""
-        return ObstacleAvoidance(*numbers, self.masked, rotational_force)
+        field, obstacles, *spacing = numbers
+        others = self.neighbours(formation, owner)
+        return ObstacleAvoidance(field, obstacles, self.masked, rotational_force, others, *spacing)

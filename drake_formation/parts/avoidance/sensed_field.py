@@ -10,7 +10,7 @@ from pydantic import Field
 from drake_formation.config.errors import Fault, shown
 from drake_formation.config.values import Length, NonNegative, Section
 from drake_formation.formation.formation import Formation
-from drake_formation.parts.part import Part
+from drake_formation.parts.part import Numbers, Part
 
 Robots = Annotated[tuple[int, ...], Field(strict=False)]
 """Numbers of robots, from 1."""
@@ -36,19 +36,32 @@ class FieldConfig(Section):
     assigned: Robots = Field(
         default=(), description="with sensing assigned, for each obstacle the number of the robot that feels it"
     )
+    robots: bool = Field(
+        default=False, description="keep away, in both phases, from the robots heard as from points, within the spacing"
+    )
+    spacing: Length = Field(
+        default=0.5,
+        description="range ρ_r (m) of the field around other robots, below the slots' distances",
+    )
 
 
 class SensedField(Part):
     """A field around obstacles that some robots sense; its configuration is a :class:`FieldConfig`."""
 
-    def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:  # noqa: ARG002
-        """Whether every obstacle is assigned to a robot that there is, and all robots compare by one margin."""
+    def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:
+        """Whether assignments, margin and spacing suit the formation."""
         if self.config.sensing == "assigned":
             yield from self._assignment_faults(formation)
         margins = {part.margin for part in formation.parts["avoidance"] if getattr(part, "masked", False)}
         if self.masked and len(margins) > 1:
             values = shown(sorted(margins))
             yield Fault(("margin",), "robots that compare distances have different margins", values, "one for all")
+
+        for other in self.neighbours(formation, owner):
+            apart = float(np.linalg.norm(formation.slots[owner] - formation.slots[other - 1]))
+            if apart <= self.config.spacing and formation.slots.any():
+                message = f"robots {owner + 1} and {other} would be pushed out of their slots, {apart:.4g} m apart"
+                yield Fault(("spacing",), message, shown(self.config.spacing), f"below {apart:.4g} m")
 
     def _assignment_faults(self, formation: Formation) -> Iterator[Fault]:
         assigned, count = self.config.assigned, len(formation.obstacles)
@@ -60,8 +73,8 @@ class SensedField(Part):
                 yield Fault(("assigned", index), f"there is no robot {robot}", shown(robot), allowed)
 
     def structure(self) -> Hashable:
-        """Who feels an obstacle, and whether that depends on the past."""
-        return self.config.sensing, self.margin > 0
+        """Who feels an obstacle, whether that depends on the past, and whether robots are kept apart."""
+        return self.config.sensing, self.margin > 0, self.config.robots
 
     @property
     def masked(self) -> bool:
@@ -84,3 +97,11 @@ class SensedField(Part):
         """Centre and radius of those obstacles (m), shape (felt, 3)."""
         felt: NDArray[np.float64] = formation.obstacles[self.feels(formation, owner)]
         return felt
+
+    def neighbours(self, formation: Formation, owner: int) -> list[int]:
+        """Numbers, from 1, of the robots that it keeps away from: those it hears."""
+        return [j + 1 for j in formation.channels.heard[owner]] if self.config.robots else []
+
+    def spacing(self) -> Numbers:
+        """The range of the field around robots (m), where they are kept apart."""
+        return (np.array([self.config.spacing]),) if self.config.robots else ()

@@ -15,6 +15,7 @@ from drake_formation.parts.roles import CONTROLLERS, ROLES, Role
 from drake_formation.scenario import Scenario, resolve
 from drake_formation.systems.consensus_error import ConsensusError
 from drake_formation.systems.hand_off import HandOff
+from drake_formation.systems.holding_sensing import HoldingSensing
 from drake_formation.systems.sensing import NearestSensing
 
 ROBOT_OUTPUTS = (
@@ -123,8 +124,11 @@ def robot_diagram(formation: Formation, robot: int) -> Diagram:
     for k, controller in enumerate(controllers):
         builder.Connect(controller.GetOutputPort("force"), control.get_input_port(k))
         builder.ExportOutput(controller.GetOutputPort("force"), f"{controller.get_name()}_force")
-    for block in asked.pop("state", ()):
-        builder.Connect(plant.GetOutputPort("state"), block.GetInputPort("state"))
+    for name in ("state", "spring_force"):
+        for block in asked.pop(name, ()):
+            builder.Connect(plant.GetOutputPort(name), block.GetInputPort(name))
+    if filters := asked.pop("nominal", ()):
+        _connect_nominal(builder, [block for block in controllers if block not in filters], filters)
     for block in asked.pop("force", ()):
         builder.Connect(control.get_output_port(), block.GetInputPort("force"))
     for name in sorted(asked, key=_port_order):
@@ -140,6 +144,15 @@ def robot_diagram(formation: Formation, robot: int) -> Diagram:
     if plant.HasOutputPort(ACCELERATION):
         builder.ExportOutput(plant.GetOutputPort(ACCELERATION), ACCELERATION)
     return builder.Build()
+
+
+def _connect_nominal(builder: DiagramBuilder, others: list[System], filters: Iterable[System]) -> None:
+    """Give to the controllers that correct the others' control what those ask for."""
+    nominal = builder.AddNamedSystem("nominal", Adder(len(others), 2))
+    for k, controller in enumerate(others):
+        builder.Connect(controller.GetOutputPort("force"), nominal.get_input_port(k))
+    for block in filters:
+        builder.Connect(nominal.get_output_port(), block.GetInputPort("nominal"))
 
 
 def _added(
@@ -204,8 +217,9 @@ def _talk(
 
 
 def _sense_nearest(builder: DiagramBuilder, robots: list[Diagram], parameters: Parameters) -> None:
-    (centres,) = parameters["sensing"]
-    sensing = builder.AddNamedSystem("sensing", NearestSensing(len(robots), centres))
+    centres, *margin = parameters["sensing"]
+    block = HoldingSensing(len(robots), centres, *margin) if margin else NearestSensing(len(robots), centres)
+    sensing = builder.AddNamedSystem("sensing", block)
     for i, robot in enumerate(robots):
         builder.Connect(robot.GetOutputPort("state"), sensing.get_input_port(i))
         if "sensed" in _input_names(robot):

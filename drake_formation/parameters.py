@@ -45,13 +45,20 @@ def placed_parts(formation: Formation) -> Iterator[tuple[str, Part, int]]:
 def block_parameters(formation: Formation) -> Parameters:
     """The numeric parameters of every block of a formation's diagram; worked out once for a formation."""
     if "numbers" not in formation.kept:
-        result: Parameters = {"consensus_error": (formation.slots,), "sensing": (formation.obstacles[:, :2],)}
+        result: Parameters = {"consensus_error": (formation.slots,), "sensing": _sensing(formation)}
         for path, part, owner in placed_parts(formation):
             if groups := part.numbers(formation, owner):
                 result[path] = groups
         formation.kept["numbers"] = result
     numbers: Parameters = formation.kept["numbers"]
     return numbers
+
+
+def _sensing(formation: Formation) -> tuple[Array, ...]:
+    """The obstacles' centres, and where robots hold on to what they sense by how much another must be nearer (m)."""
+    centres = formation.obstacles[:, :2]
+    margin = max(getattr(part, "margin", 0.0) for part in formation.parts["avoidance"])
+    return (centres, np.array([margin])) if margin else (centres,)
 
 
 def set_parameters(diagram: Diagram, context: Context, scenario: Scenario) -> None:

@@ -12,7 +12,8 @@ from strategies import generators, metres, random_state, scenarios
 from drake_formation.diagram import ROBOT_OUTPUTS, build_diagram
 from drake_formation.formation import graphs
 from drake_formation.parts.avoidance.khatib import avoidance_force
-from drake_formation.parts.tracking.lqr import cost_matrix, lqr_gain, robot_matrices
+from drake_formation.parts.tracking.costs import cost_matrix
+from drake_formation.parts.tracking.lqr import lqr_gain, robot_matrices
 from drake_formation.scenario import ScenarioError, load_scenario, resolve, with_overrides
 
 few = settings(max_examples=25)

@@ -34,14 +34,16 @@ KNOWN: dict[str, tuple[type[Part], ...]] = {
 def control_law(formation: Formation, times: Array, recorded: Array) -> Law:
     """The control u of every robot during transport (paper, Eq. 8), as a function of time and state.
 
-    Where a robot has parts of other kinds, which may have states of their own, it is read off what was recorded.
+    Where a robot has parts of other kinds, which may have states of their own, or where robots remember
+    what they sense or keep away from each other, it is read off what was recorded.
 
     Args:
         formation: what ran.
         times: when it was recorded (s), shape (m,).
         recorded: the control forces then (N), shape (m, N, 2).
     """
-    if all(isinstance(part, kinds) for role, kinds in KNOWN.items() for part in formation.parts[role]):
+    known = all(isinstance(part, kinds) for role, kinds in KNOWN.items() for part in formation.parts[role])
+    if known and not any(part.margin or part.config.robots for part in formation.parts["avoidance"]):
         return ControlLaw(formation)
 
     def between(at: Array, position: Array, _velocity: Array) -> Array:
@@ -78,7 +80,9 @@ class ControlLaw:
         self._consensus_gains = gains
         self._range, self._gain = np.array([group[0] for group in own["avoidance"]]).T
         self._obstacles = formation.obstacles
-        self._masked = np.array([part.config.sensing == "nearest" for part in formation.parts["avoidance"]])
+        fields = formation.parts["avoidance"]
+        self._masked = np.array([field.masked for field in fields])
+        self._feels = np.array([field.feels(formation, i) for i, field in enumerate(fields)], dtype=float)
         self._reference = numbers["reference"]
         self._set_point = isinstance(formation.parts["reference"][0], SetPointReference)
 
@@ -128,11 +132,11 @@ class ControlLaw:
     def _avoid(self, position: Array) -> Array:
         """The sum of what the sensed obstacles exert."""
         result = np.zeros_like(position)
-        for x, y, radius in self._obstacles:
+        for (x, y, radius), feels in zip(self._obstacles, self._feels.T, strict=True):
             dx, dy = position[..., 0] - x, position[..., 1] - y
             with np.errstate(divide="ignore", invalid="ignore"):  # in its middle, where no run goes on
                 force = np.stack(avoidance_force(dx, dy, radius, self._range, self._gain), axis=-1)
-            result += self._sensed(dx * dx + dy * dy)[..., None] * force
+            result += (feels * self._sensed(dx * dx + dy * dy))[..., None] * force
         return result
 
     def _sensed(self, squared_distances: Array) -> Array:

@@ -37,6 +37,8 @@ SENSED = Port("sensed", None, "for each obstacle 1 where no robot is nearer to i
 HEARD = Port("channel_j", STATE, "the state that robot j sends, for every robot heard (m, m/s)")
 HELD = Port("spring_j", STATE, "the state of robot j, for every robot that the object couples (m, m/s)")
 FORCE = Port("force", 2, "control force (N)", required=True)
+NOMINAL = Port("nominal", 2, "sum of the forces of the robot's controllers that do not ask for it (N)")
+OBJECT = Port("spring_force", 2, "what the object exerts on the robot (N)")
 KNOWN = (OWN_STATE, REFERENCE, PHASE, HEARD, SENSED)
 """What any controller may ask for."""
 
@@ -93,7 +95,7 @@ ROLES: dict[str, Role] = {
             (FORCE, Port("error", STATE, "tracking error x − x_r (m, m/s)", required=True)),
         ),
         Role("coordination", ("consensus",), "consensus", "consensus", "robot", KNOWN, (FORCE,)),
-        Role("avoidance", ("avoidance",), "avoidance", "khatib", "robot", KNOWN, (FORCE,)),
+        Role("avoidance", ("avoidance",), "avoidance", "khatib", "robot", (*KNOWN, NOMINAL, OBJECT), (FORCE,)),
         Role(
             "reference",
             ("transport", "reference"),

@@ -53,11 +53,12 @@ def require_compiled_settings(scenario: Scenario, method: str = "dormand_prince"
         rate = shown(settings.target_realtime_rate)
         faults.append(Fault(("simulator", "target_realtime_rate"), "a compiled run keeps no clock", rate, "0"))
     formation = resolve(scenario)
-    fields = [part.config for part in formation.parts["avoidance"]]
-    switches = felt_obstacles(formation) and any(getattr(field, "sensing", "") == "nearest" for field in fields)
+    fields = formation.parts["avoidance"]
+    jumps = any(getattr(field, "masked", False) and not field.margin for field in fields)
+    switches = felt_obstacles(formation) and jumps
     if method == "exponential" and switches and formation.robots > 1:
         message = "the engine exponential cannot step over the jump in force where another robot becomes the nearest"
-        allowed = "in_range, or the engine compiled or blocks"
+        allowed = "in_range, or the engine compiled or blocks, or an avoidance.margin above 0"
         faults.append(Fault(("avoidance", "sensing"), message, "nearest", allowed))
     if faults:
         raise ScenarioError(faults)

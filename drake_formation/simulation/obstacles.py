@@ -104,8 +104,9 @@ def chattering(scenario: Scenario, clearance: Array) -> str:
         scenario: what ran.
         clearance: of every robot from every obstacle during transport (m), shape (samples, N, obstacles).
     """
-    fields = [part.config for part in resolve(scenario).parts["avoidance"]]
-    masked = [field for field in fields if getattr(field, "sensing", "") == "nearest" and field.gain > 0.0]
+    fields = resolve(scenario).parts["avoidance"]
+    at_once = [field for field in fields if getattr(field, "masked", False) and not field.margin]
+    masked = [field.config for field in at_once if field.config.gain > 0.0]
     if not masked or not clearance.size:
         return ""
     felt = clearance.min(axis=1)[1:] < max(field.range for field in masked)
@@ -115,7 +116,7 @@ def chattering(scenario: Scenario, clearance: Array) -> str:
     return (
         f"Obstacle {int(np.argmax(changes)) + 1} was seen by another robot {int(changes.max())} times: robots are "
         "equally near to it, and each is pushed away as soon as it is the nearest. Such a run takes very short steps. "
-        "Try avoidance.sensing=in_range, or another place for the obstacle or the goal."
+        "Try avoidance.sensing=in_range, avoidance.margin=0.1, or another place for the obstacle or the goal."
     )
 
 

@@ -39,6 +39,15 @@ def positive_part(x: Scalar) -> Scalar:
     return at_least(x, 0.0)
 
 
+def lesser(x: Scalar, y: Scalar) -> Scalar:
+    """min(x, y), of any scalars alike or arrays of floats."""
+    if isinstance(x, Expression):
+        return symbolic.min(x, y)
+    if isinstance(x, np.ndarray):
+        return np.minimum(x, y)
+    return x if x < y else y
+
+
 def at_most(x: Scalar, bound: Scalar) -> Scalar:
     """1 where x ≤ bound and 0 elsewhere, of any scalar or an array of floats."""
     if isinstance(x, np.ndarray):

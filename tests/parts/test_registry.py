@@ -113,8 +113,8 @@ def test_a_role_that_there_is_not_is_refused():
 
 
 def test_an_unknown_part_lists_those_there_are():
-    with pytest.raises(PartError, match=r"there is no tracking 'pid'; there are lqr"):
-        find("tracking", "pid")
+    with pytest.raises(PartError, match=r"there is no tracking 'no_such'; there are lqr"):
+        find("tracking", "no_such")
 
 
 def built(cls):

@@ -7,7 +7,9 @@ import pytest
 from pydrake.autodiffutils import AutoDiffXd, ExtractGradient, ExtractValue
 from pydrake.symbolic import Evaluate, Expression, Variable
 
+from drake_formation.parts.avoidance.barrier import BarrierFilter
 from drake_formation.parts.avoidance.khatib import ObstacleAvoidance
+from drake_formation.parts.avoidance.rotational import rotational_force
 from drake_formation.parts.coordination.consensus import ConsensusController
 from drake_formation.parts.references.set_point import SetPoint
 from drake_formation.parts.robots.omnidirectional import Omnidirectional
@@ -17,6 +19,7 @@ from drake_formation.parts.robots.unicycle import Unicycle
 from drake_formation.parts.springs.hookean import Hookean
 from drake_formation.parts.springs.linear import Linear
 from drake_formation.parts.tracking.controller import TrackingController
+from drake_formation.parts.tracking.integral_controller import IntegralController
 from drake_formation.parts.tracking.lqr import lqr_force
 from drake_formation.systems.consensus_error import ConsensusError
 from drake_formation.systems.hand_off import HandOff
@@ -47,11 +50,15 @@ MAKERS = {
     "tracking": lambda: TrackingController(
         lqr_force, [[[1.0, 0.1, 9.0, 0.2], [0.3, 1.0, 0.4, 9.0]], [0.0]], [0.5, -0.5]
     ),
+    "integral tracking": lambda: IntegralController(np.arange(12.0).reshape(2, 6), [40.0], [0.5, -0.5]),
     "consensus": lambda: ConsensusController([2, 5], [100.0, 7.0], [[1.0, 0.0], [0.0, -1.0]]),
     "consensus without channels": lambda: ConsensusController([], [100.0, 7.0], np.zeros((0, 2))),
     "avoidance": lambda: ObstacleAvoidance([2.0, 30.0], OBSTACLES),
     "masked avoidance": lambda: ObstacleAvoidance([2.0, 30.0], OBSTACLES, masked=True),
     "avoidance without obstacles": lambda: ObstacleAvoidance([2.0, 30.0], np.zeros((0, 3))),
+    "rotational avoidance": lambda: ObstacleAvoidance([2.0, 0.8, 0.6, 30.0], OBSTACLES, False, rotational_force),
+    "barrier": lambda: BarrierFilter([40.0, 0.3, 2.0, 20.0], OBSTACLES),
+    "barrier without obstacles": lambda: BarrierFilter([40.0, 0.3, 2.0, 20.0], np.zeros((0, 3))),
     "sensing": lambda: NearestSensing(3, [[1.0, 1.0], [-1.0, 0.5]]),
     "sensing without obstacles": lambda: NearestSensing(2, np.zeros((0, 2))),
     "consensus error": lambda: ConsensusError([[0.0, 0.5], [0.5, -0.5], [-0.5, -0.5]]),

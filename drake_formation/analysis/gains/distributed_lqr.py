@@ -15,7 +15,8 @@ from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.analysis.linear.linearization import STATES, LinearFormation
 from drake_formation.analysis.linear.well_posed import require_agreement
 from drake_formation.parts.coordination.distributed_gains import decay_rate, distributed_gains
-from drake_formation.parts.tracking.lqr import cost_matrix, lqr_gain
+from drake_formation.parts.tracking.costs import cost_matrix
+from drake_formation.parts.tracking.lqr import lqr_gain
 
 Array = NDArray[np.float64]
 

@@ -18,7 +18,7 @@ from drake_formation.analysis.linear.assumptions import require_free_masses, req
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.diagram import build_diagram
 from drake_formation.formation.formation import Formation
-from drake_formation.parameters import find_block, robot_name
+from drake_formation.parameters import find_block, placed_parts, robot_name
 from drake_formation.parts.part import OWN
 from drake_formation.scenario import Scenario, resolve, with_overrides
 from drake_formation.systems.templates import CONVERTING
@@ -177,8 +177,7 @@ def at_rest(scenario: Scenario) -> Scenario:
         "aggregation.duration": 0.0,
         "robots.start": {"centre": list(scenario.transport.goal)},
         "transport.reference": {"kind": "set_point"},
-        "avoidance.obstacles": [],
-        "avoidance.sensing": "in_range",
+        "avoidance": {"obstacles": []},
     }
     if resolve(scenario).start_velocities.any():
         changes["robots.velocity"] = [0.0, 0.0]
@@ -208,10 +207,18 @@ class StateMatrix:
 
 
 def _require_states(diagram: Diagram, formation: Formation) -> None:
-    """Refuse parts with states beyond position and velocity, which no matrix here has rows for."""
-    states = diagram.num_continuous_states()
-    if states != STATES * formation.robots or diagram.num_discrete_state_groups():
-        raise IllPosedError(f"the parts have states of their own ({states} in all); what is certified has four a robot")
+    """Refuse parts with states beyond a robot's position and velocity, which no matrix here has rows for."""
+    whole, found = diagram.CreateDefaultContext(), []
+    for path, part, _ in placed_parts(formation):
+        if not diagram.HasSubsystemNamed(path.split("/")[0]):
+            continue  # a wire
+        own = find_block(diagram, path).GetMyContextFromRoot(whole)
+        expected = STATES if part.role == "robot" else 0
+        if own.num_continuous_states() != expected or own.num_discrete_state_groups():
+            found.append(part.called())
+    if found:
+        named = ", ".join(dict.fromkeys(found))
+        raise IllPosedError(f"{named} has states of its own; what is certified has four a robot")
 
 
 def _force_matrix(diagram: Diagram, scenario: Scenario) -> Array:

@@ -1,22 +1,24 @@
 """Local collision avoidance of one robot: Khatib's artificial potential field."""
 
-from collections.abc import Hashable
-from typing import Any, Literal
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydantic import Field
 from pydrake.systems.framework import BasicVector_, LeafSystem_
 
-from drake_formation.config.values import Length, NonNegative, Section
 from drake_formation.formation.formation import Formation
-from drake_formation.parts.part import Numbers, Part
+from drake_formation.parts.avoidance.sensed_field import FieldConfig, SensedField
+from drake_formation.parts.part import Numbers
 from drake_formation.parts.registry import part
 from drake_formation.systems.scalars import Scalar, at_least, positive_part
 from drake_formation.systems.templates import block_template, in_double
 
 SURFACE = 1e-50
 """The least clearance that counts (m), so small that the force there, some 1e150 N, outlasts every shorter step."""
+
+FieldLaw = Callable[..., tuple[Scalar, Scalar]]
+"""``law(dx, dy, radius, range, *numbers, gain)``: force (N) on a robot at (dx, dy) from an obstacle's centre (m)."""
 
 
 def avoidance_force(
@@ -51,33 +53,50 @@ def ObstacleAvoidance_(T: Any) -> Any:  # noqa: N802 - Drake's name for a templa
     class Impl(LeafSystem_[T]):  # type: ignore[misc]
         """The avoidance control of one robot: the sum of what its sensed obstacles exert during transport.
 
-        Input ports: ``state`` (size 4), ``phase`` (0 aggregation, 1 transport: obstacles are felt) and, with masked
-        sensing, ``sensed`` (1 for each obstacle this robot is allowed to see, else 0). Output port: ``force`` (N,
-        size 2). Parameters: 0, [ρ0, η] (m, N m²); 1, for each obstacle its centre and radius (m, three numbers).
+        Input ports: ``state`` (size 4), ``phase`` (0 aggregation, 1 transport: obstacles are felt), with masked
+        sensing ``sensed`` (1 for each obstacle this robot is allowed to see, else 0), and per robot j that it keeps
+        away from, in both phases, ``channel_j`` (the state it sends, size 4). Output port: ``force`` (N, size 2).
+        Parameters: 0, the law's numbers and gain, for Khatib's [ρ0, η] (m, N m²); 1, for each obstacle its centre and
+        radius (m, three numbers); and where it keeps away from robots 2, the range of the field around them (m).
         """
 
         def _construct(
-            self, field: ArrayLike, obstacles: ArrayLike, masked: bool = False, *, converter: Any = None
+            self,
+            field: ArrayLike,
+            obstacles: ArrayLike,
+            masked: bool = False,
+            law: FieldLaw = avoidance_force,
+            neighbours: Sequence[int] = (),
+            spacing: ArrayLike | None = None,
+            *,
+            converter: Any = None,
         ) -> None:
             """Make the controller.
 
             Args:
-                field: [ρ0, η] (m, N m²).
+                field: the law's numbers, the gain last; for Khatib's [ρ0, η] (m, N m²).
                 obstacles: centre and radius of each obstacle (m), shape (obstacles, 3).
                 masked: declare the port ``sensed``.
+                law: force of one obstacle; in proportion to the gain, and none without.
+                neighbours: numbers of the robots it keeps away from (from 1), which name the channel ports.
+                spacing: range of the field around those robots (m), shape (1,); None where there are none.
                 converter: for Drake's scalar conversion.
             """
             LeafSystem_[T].__init__(self, converter=converter)
-            self.arguments = (field, obstacles, masked)
-            self.kind = masked  # all else that it computes with is a parameter
+            self.arguments = (field, obstacles, masked, law, neighbours, spacing)
+            self.kind = (masked, law)  # all else that it computes with is a parameter
             count = len(np.reshape(obstacles, (-1, 3)))
+            self._law = law
             self._zero = T(0.0)
             self._everything = [1.0] * count
             self._state = self.DeclareVectorInputPort("state", 4)
             self._phase = self.DeclareVectorInputPort("phase", 1)
+            self._channels = [self.DeclareVectorInputPort(f"channel_{j}", 4) for j in neighbours]
             self._sensed = self.DeclareVectorInputPort("sensed", count) if masked else None
             self.DeclareNumericParameter(BasicVector_[T](field))
             self.DeclareNumericParameter(BasicVector_[T](np.ravel(obstacles)))
+            if spacing is not None:
+                self.DeclareNumericParameter(BasicVector_[T](spacing))
             self.DeclareVectorOutputPort(
                 "force", 2, self._calc_force, {self.all_input_ports_ticket(), self.all_parameters_ticket()}
             )
@@ -88,14 +107,19 @@ def ObstacleAvoidance_(T: Any) -> Any:  # noqa: N802 - Drake's name for a templa
         def _calc_force(self, context: Any, output: Any) -> None:
             x, y, _, _ = self._state.Eval(context).tolist()
             (phase,) = self._phase.Eval(context).tolist()
-            sensing_range, gain = context.get_numeric_parameter(0).CopyToVector().tolist()
+            *numbers, gain = context.get_numeric_parameter(0).CopyToVector().tolist()
             obstacles = context.get_numeric_parameter(1).CopyToVector().reshape(-1, 3).tolist()
             sensed = self._sensed.Eval(context).tolist() if self._sensed else self._everything
             fx = fy = self._zero
             for seen, (ox, oy, radius) in zip(sensed, obstacles, strict=True):
                 # What is not felt has no gain: inside an obstacle the force is too large to be multiplied away.
-                gx, gy = avoidance_force(x - ox, y - oy, radius, sensing_range, phase * seen * gain)
+                gx, gy = self._law(x - ox, y - oy, radius, *numbers, phase * seen * gain)
                 fx, fy = fx + gx, fy + gy  # += would change an Expression in place
+            for port in self._channels:
+                nx, ny, _, _ = port.Eval(context).tolist()
+                (spacing,) = context.get_numeric_parameter(2).CopyToVector().tolist()
+                gx, gy = self._law(x - nx, y - ny, 0.0, spacing, *numbers[1:], gain)
+                fx, fy = fx + gx, fy + gy
             output.SetFromVector(np.array([fx, fy]))
 
     return Impl
@@ -105,29 +129,17 @@ ObstacleAvoidance = in_double(ObstacleAvoidance_)
 
 
 @part("avoidance", kind="khatib")
-class Khatib(Part):
+class Khatib(SensedField):
     """Khatib's repulsive potential around obstacles sensed during transport."""
 
-    class Config(Section):
-        """Range and strength of the field, and who feels it."""
+    Config = FieldConfig
 
-        range: Length = Field(default=1.3, description="sensing range ρ0 (m); inferred: 1.3")
-        gain: NonNegative = Field(default=31.56, description="repulsive gain η (N m²); inferred: 31.56")
-        sensing: Literal["in_range", "nearest"] = Field(
-            default="in_range",
-            description="in_range: every robot within range feels an obstacle; nearest: only the one nearest to it, "
-            "not with the engine exponential; robots that stay equally near feel it in turns, in very short steps",
-        )
-
-    def structure(self) -> Hashable:
-        """Who feels an obstacle."""
-        sensing: str = self.config.sensing
-        return sensing
-
-    def numbers(self, formation: Formation, owner: int) -> Numbers:  # noqa: ARG002
+    def numbers(self, formation: Formation, owner: int) -> Numbers:
         """The field's range and gain, and the obstacles."""
-        return np.array([self.config.range, self.config.gain]), formation.obstacles
+        return np.array([self.config.range, self.config.gain]), self.felt(formation, owner), *self.spacing()
 
-    def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:  # noqa: ARG002
+    def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:
         """The controller."""
-        return ObstacleAvoidance(*numbers, self.config.sensing == "nearest")
+        field, obstacles, *spacing = numbers
+        others = self.neighbours(formation, owner)
+        return ObstacleAvoidance(field, obstacles, self.masked, avoidance_force, others, *spacing)

@@ -14,7 +14,7 @@ from drake_formation.parts.coordination.state_feedback import StateFeedback
 from drake_formation.parts.coordination.weights import NO_OPTIMUM, Weights, together_faults, weight_faults
 from drake_formation.parts.part import Numbers, Part
 from drake_formation.parts.registry import part
-from drake_formation.parts.tracking.lqr import cost_matrix
+from drake_formation.parts.tracking.costs import cost_matrix
 
 
 class DistributedWeights(Weights):

@@ -11,7 +11,7 @@ from drake_formation.config.values import CostMatrix, Section
 from drake_formation.formation.formation import Formation
 from drake_formation.parts.coordination.linear_formation import block_diagonal
 from drake_formation.parts.part import Part
-from drake_formation.parts.tracking.lqr import (
+from drake_formation.parts.tracking.costs import (
     cost_matrix,
     input_cost_faults,
     is_semidefinite,

@@ -10,9 +10,29 @@ from pydrake.systems.framework import BasicVector_, LeafSystem_
 from drake_formation.systems.scalars import Scalar
 from drake_formation.systems.templates import block_template, in_double
 
+Error = tuple[Scalar, Scalar, Scalar, Scalar]
+"""A tracking error ε = x − x_r (m, m/s)."""
+
 TrackingLaw = Callable[..., tuple[Scalar, Scalar]]
 """``law(error, acceleration, *numbers)``: the force (N) of a tracking error ε = x − x_r (m, m/s, four numbers) under a
 reference's acceleration (m/s², two numbers), each further argument the list of one group of numbers."""
+
+
+def tracking_error(state: list[Scalar], reference: list[Scalar], slot: list[Scalar]) -> Error:
+    """The tracking error ε = x − x_r of one robot (paper, Eq. 9).
+
+    Args:
+        state: x = [q; v] of the robot (m, m/s).
+        reference: motion of the formation centre [p; ṗ; p̈] (m, m/s, m/s²), from which x_r = [p + h; ṗ].
+        slot: h relative to the formation centre (m).
+
+    Returns:
+        Four numbers (m, m/s).
+    """
+    x, y, vx, vy = state
+    rx, ry, rvx, rvy, _, _ = reference
+    hx, hy = slot
+    return x - rx - hx, y - ry - hy, vx - rvx, vy - rvy
 
 
 @block_template("TrackingController_", __name__)
@@ -55,11 +75,9 @@ def TrackingController_(T: Any) -> Any:  # noqa: N802 - Drake's name for a templ
         def _construct_copy(self, other: Any, converter: Any = None) -> None:
             Impl._construct(self, *other.arguments, converter=converter)
 
-        def _error(self, context: Any, reference: list[Scalar]) -> tuple[Scalar, Scalar, Scalar, Scalar]:
-            x, y, vx, vy = self._state.Eval(context).tolist()
-            rx, ry, rvx, rvy, _, _ = reference
-            hx, hy = context.get_numeric_parameter(len(self._groups)).CopyToVector().tolist()
-            return x - rx - hx, y - ry - hy, vx - rvx, vy - rvy
+        def _error(self, context: Any, reference: list[Scalar]) -> Error:
+            slot = context.get_numeric_parameter(len(self._groups)).CopyToVector().tolist()
+            return tracking_error(self._state.Eval(context).tolist(), reference, slot)
 
         def _calc_force(self, context: Any, output: Any) -> None:
             reference = self._reference.Eval(context).tolist()

@@ -9,12 +9,13 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import Field
 from pydrake.systems.controllers import LinearQuadraticRegulator
 
-from drake_formation.config.errors import Fault, shown
+from drake_formation.config.errors import Fault
 from drake_formation.config.values import CostMatrix, Section
 from drake_formation.formation.formation import Formation
 from drake_formation.parts.part import Numbers, Part
 from drake_formation.parts.registry import part
 from drake_formation.parts.tracking.controller import TrackingController
+from drake_formation.parts.tracking.costs import cost_matrix, designed_poles, input_cost_faults, state_cost_faults
 from drake_formation.systems.scalars import Scalar
 
 Array = NDArray[np.float64]
@@ -104,12 +105,6 @@ def lqr_force(
     return fx + ahead_x, fy + ahead_y
 
 
-def cost_matrix(value: ArrayLike, size: int) -> Array:
-    """An LQR cost, shape (size, size), from a multiple of the identity, a diagonal or the matrix itself."""
-    array = np.asarray(value, dtype=float)
-    return array if array.ndim == 2 else np.diag(np.broadcast_to(array, (size,)))
-
-
 @part("tracking", kind="lqr")
 class Lqr(Part):
     """The local LQR about the reference (paper, Eqs. 9-12)."""
@@ -159,73 +154,9 @@ class Lqr(Part):
         return TrackingController(lqr_force, groups, slot)
 
 
-_ROUNDING = 1e-12
-"""Relative size of what rounding leaves of a zero."""
-
-
-def state_cost_faults(value: Any) -> Iterator[Fault]:
-    """What is wrong with a robot's state cost, given as ``Q``; see :func:`cost_matrix`."""
-    path = ("Q",)
-    allowed = "symmetric, positive semi-definite 4 x 4, weighting both positions"
-    if faults := list(matrix_faults(path, value, 4, allowed)):
-        yield from faults
-        return
-    cost = _scaled(cost_matrix(value, 4))
-    if not is_semidefinite(cost):
-        yield Fault(path, "not positive semi-definite", shown(value), allowed)
-    elif np.linalg.eigvalsh(cost[:2, :2])[0] <= 0:
-        # A robot at rest anywhere is an equilibrium of the plant. If it costs nothing, (A, Q) is not
-        # detectable: the mode at 0 stays unseen and no optimal gain moves it (Popov-Belevitch-Hautus).
-        yield Fault(path, "a position costs nothing, so the mode at 0 is not detectable", shown(value), allowed)
-
-
-def input_cost_faults(value: Any) -> Iterator[Fault]:
-    """What is wrong with a robot's input cost, given as ``R``; see :func:`cost_matrix`."""
-    path = ("R",)
-    allowed = "symmetric, positive definite 2 x 2"
-    if faults := list(matrix_faults(path, value, 2, allowed)):
-        yield from faults
-    elif np.linalg.eigvalsh(_scaled(cost_matrix(value, 2)))[0] <= 0:
-        yield Fault(path, "not positive definite", shown(value), allowed)
-
-
-def matrix_faults(path: tuple[str], value: Any, size: int, allowed: str) -> Iterator[Fault]:
-    """Whether a cost has so many rows and columns and is symmetric."""
-    if not isinstance(value, tuple):
-        return
-    if not (value and isinstance(value[0], tuple)):
-        if len(value) != size:
-            yield Fault(path, f"a diagonal of {len(value)} entries, not {size}", shown(value), allowed)
-        return
-    if [len(row) for row in value] != [size] * size:
-        yield Fault(path, f"not {size} rows of {size} entries", shown(value), allowed)
-        return
-    cost = _scaled(np.array(value))
-    if np.abs(cost - cost.T).max() > _ROUNDING:
-        yield Fault(path, "not symmetric", shown(value), allowed)
-
-
 @functools.lru_cache(maxsize=1024)
 def _stabilizes(mass: float, state_cost: Any, input_cost: Any) -> bool:
     state, cost = cost_matrix(state_cost, 4), cost_matrix(input_cost, 2)
-    identity, zero = np.eye(2), np.zeros((2, 2))
-    a: Any = np.block([[zero, identity], [zero, zero]])
     with np.errstate(all="ignore"):
-        b = np.vstack([zero, identity / mass])
-        try:
-            gain, _ = LinearQuadraticRegulator(a, b, state, cost)
-        except (RuntimeError, SystemExit):  # SystemExit is how Drake reports a failed demand
-            return False
-        closed_loop = a - b @ gain
-    return bool(np.isfinite(closed_loop).all() and np.linalg.eigvals(closed_loop).real.max() < 0)
-
-
-def is_semidefinite(cost: Array) -> bool:
-    """Whether a symmetric cost is positive semi-definite, up to rounding."""
-    return bool(np.linalg.eigvalsh(_scaled(cost))[0] >= -_ROUNDING)
-
-
-def _scaled(cost: Array) -> Array:
-    """A cost with entries of at most 1: signs of eigenvalues stay, overflows do not."""
-    largest = np.abs(cost).max()
-    return cost / largest if largest > 0 else cost
+        poles = designed_poles(LinearQuadraticRegulator, *robot_matrices(mass), state, cost)
+    return bool(poles.real.max() < 0)

@@ -15,7 +15,7 @@ from drake_formation import load_scenario, simulate
 from drake_formation.analysis import linearize
 from drake_formation.analysis.gains.distributed_lqr import distributed_lqr, relative_cost_of
 from drake_formation.analysis.linear.errors import IllPosedError
-from drake_formation.parts.tracking.lqr import cost_matrix
+from drake_formation.parts.tracking.costs import cost_matrix
 from drake_formation.scenario import resolve, with_overrides
 
 CONNECTED = [g for g in nx.graph_atlas_g() if 2 <= g.number_of_nodes() <= 5 and nx.is_connected(g)]

@@ -10,7 +10,8 @@ from strategies import scenarios
 from drake_formation import build_diagram, load_scenario
 from drake_formation.analysis.linear.linearization import linearize
 from drake_formation.analysis.stability.local_lqr import local_loops
-from drake_formation.parts.tracking.lqr import cost_matrix, robot_matrices
+from drake_formation.parts.tracking.costs import cost_matrix
+from drake_formation.parts.tracking.lqr import robot_matrices
 
 
 @given(scenario=scenarios())

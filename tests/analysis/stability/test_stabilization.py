@@ -11,7 +11,7 @@ from drake_formation import build_diagram, load_scenario, with_overrides
 from drake_formation.analysis.linear.linearization import linearize
 from drake_formation.analysis.stability.modes import modes
 from drake_formation.analysis.stability.stabilization import cause, remedies
-from drake_formation.parts.tracking.lqr import cost_matrix
+from drake_formation.parts.tracking.costs import cost_matrix
 
 
 def growth(scenario, seconds=8.0):

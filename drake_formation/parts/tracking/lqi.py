@@ -1,0 +1,96 @@
+"""LQR with integral action: the local controller that no constant force keeps from its reference."""
+
+import functools
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from pydantic import Field
+from pydrake.systems.controllers import LinearQuadraticRegulator
+
+from drake_formation.config.errors import Fault
+from drake_formation.config.values import CostMatrix, Section
+from drake_formation.formation.formation import Formation
+from drake_formation.parts.part import Numbers, Part
+from drake_formation.parts.registry import part
+from drake_formation.parts.tracking.costs import cost_matrix, designed_poles, input_cost_faults, state_cost_faults
+from drake_formation.parts.tracking.integral_controller import IntegralController
+from drake_formation.parts.tracking.lqr import robot_matrices
+
+Array = NDArray[np.float64]
+
+STATES = 6
+"""Position, velocity and the integral of the position's error, in the plane."""
+
+
+def augmented_matrices(mass: float) -> tuple[Array, Array]:
+    """A (6, 6) and B (6, 2) of [ε; z], ż = the first two of ε, of one robot of a mass (kg)."""
+    a, b = np.zeros((STATES, STATES)), np.zeros((STATES, 2))
+    a[:4, :4], b[:4] = robot_matrices(mass)
+    a[4:, :2] = np.eye(2)
+    return a, b
+
+
+def lqi_gain(mass: float, state_cost: ArrayLike, input_cost: ArrayLike) -> Array:
+    """Gain of the LQR on the augmented system (Young & Willems 1972), by Drake's ``LinearQuadraticRegulator``.
+
+    Args:
+        mass: m_i (kg).
+        state_cost: Q of [ε; z], shape (6, 6), symmetric positive semi-definite with z weighted.
+        input_cost: R, shape (2, 2), symmetric positive definite.
+
+    Returns:
+        K, shape (2, 6), in N/m, N s/m and N/(m s).
+    """
+    costs = (np.asarray(cost, dtype=float) for cost in (state_cost, input_cost))
+    gain, _ = LinearQuadraticRegulator(*augmented_matrices(mass), *costs)
+    return np.asarray(gain)
+
+
+@part("tracking", kind="lqi")
+class Lqi(Part):
+    """LQR with integral action on the position's error."""
+
+    class Config(Section):
+        """Its weights."""
+
+        Q: CostMatrix = Field(
+            default=(1.0, 1.0, 1.0, 1.0, 0.01, 0.01),
+            description="cost of position, velocity and the position's integral, 6 x 6: a number times I, a diagonal "
+            "or a matrix; chosen: the paper's I, and 0.01 of the integral",
+        )
+        R: CostMatrix = Field(
+            default=1.0, description="input cost, 2 x 2: a number times I, a diagonal or a matrix; chosen: I"
+        )
+        feed_forward: bool = Field(
+            default=False, description="add m_i a_r, the force that the reference's acceleration takes; chosen: none"
+        )
+
+    def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:
+        """Whether the weights give a gain that brings the robot to its set point."""
+        resting = state_cost_faults(self.config.Q, STATES, slice(4, 6), "position integral")
+        faults = [*resting, *input_cost_faults(self.config.R)]
+        yield from faults
+        mass = float(formation.masses[owner])
+        if not faults and not _stabilizes(mass, self.config.Q, self.config.R):
+            message = f"Drake finds no stabilizing gain for a robot of {mass:g} kg"
+            yield Fault((), message, allowed="Q, R and masses of less different sizes")
+
+    def numbers(self, formation: Formation, owner: int) -> Numbers:
+        """The gain, the mass in the feed-forward, and the slot."""
+        mass = float(formation.masses[owner])
+        gain = lqi_gain(mass, cost_matrix(self.config.Q, STATES), cost_matrix(self.config.R, 2))
+        return gain, np.array([mass if self.config.feed_forward else 0.0]), formation.slots[owner]
+
+    def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:  # noqa: ARG002
+        """The controller."""
+        return IntegralController(*numbers)
+
+
+@functools.lru_cache(maxsize=1024)
+def _stabilizes(mass: float, state_cost: Any, input_cost: Any) -> bool:
+    costs = cost_matrix(state_cost, STATES), cost_matrix(input_cost, 2)
+    with np.errstate(all="ignore"):
+        poles = designed_poles(LinearQuadraticRegulator, *augmented_matrices(mass), *costs)
+    return bool(poles.real.max() < 0)

@@ -5,7 +5,7 @@ One command a file, beside it what it writes: ``run`` and ``run_folder``, ``anal
 """
 
 from drake_formation.cli import (  # noqa: I001 (in the order in which --help lists them)
-    run, sweep, analyze, validate, graphviz, reproduce, schema, scenarios, parts, metrics,  # noqa: F401
+    run, sweep, compare, analyze, validate, graphviz, reproduce, schema, scenarios, parts, metrics,  # noqa: F401
 )  # fmt: skip
 from drake_formation.cli.app import app, main
 

@@ -1,8 +1,6 @@
 """Largest control force of any robot."""
 
-import numpy as np
-
-from drake_formation.measuring.control_law import control_law
+from drake_formation.measuring.control_law import between_samples, control_law
 from drake_formation.measuring.metric import metric
 from drake_formation.measuring.transport import Transport
 from drake_formation.simulation.extremes import Vectors, longest
@@ -14,9 +12,7 @@ def peak_force(transport: Transport) -> float:
     """The control force as recorded, and by the blocks' laws in between; springs are not part of it (N)."""
     robots, recorded = transport.robots, transport["control_force"]
     law = control_law(transport.formation, robots.times, recorded)
-    steps = np.arange(len(robots.times) - 1)
-    position, velocity, _ = robots.at(steps, np.full((len(steps), 1), 0.5))
-    middle = law(0.5 * (robots.times[:-1] + robots.times[1:]), position[:, 0], velocity[:, 0])
+    middle, _ = between_samples(transport)
     # Forces have no second derivatives to go by: a step's chord is taken to be left by twice what it is half-way.
     bulge = length_of(recorded[:-1] - 2 * middle + recorded[1:])
     return float(longest(Vectors(robots, law, recorded, bulge))[0])

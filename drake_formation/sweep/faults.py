@@ -1,36 +1,42 @@
-"""From what pydantic finds wrong with a sweep file to faults as scenarios have them."""
+"""From what pydantic finds wrong with a file of many runs to faults as scenarios have them."""
 
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from drake_formation.config.errors import MESSAGES, Fault, Path, ScenarioError, nearest, shown
+from drake_formation.config.errors import MESSAGES, Fault, Path, nearest, shown
 from drake_formation.config.values import Section
 from drake_formation.scenario.source import Document
-from drake_formation.sweep.schema import SECTIONS, SweepFile
+
+File = TypeVar("File", bound=Section)
+Sections = Mapping[str | int, type[Section]]
+"""Sections by the last name in pydantic's location that leads to them; all else is in the file's own."""
 
 
-def parsed(document: Document) -> SweepFile:
+def parsed(document: Document, model: type[File], sections: Sections) -> File:
     """The model of a document.
+
+    Args:
+        document: a file.
+        model: what it is to be.
+        sections: what is in it.
 
     Raises:
         ScenarioError: with all faults of single fields.
     """
     try:
-        return SweepFile.model_validate(document.data)
+        return model.model_validate(document.data)
     except ValidationError as error:
-        raise error_of(document, error) from error
+        around: Sections = {"": model, **sections}
+        details = error.errors(include_url=False)
+        raise document.attributed(_fault(document.data, detail, around) for detail in details) from error
 
 
-def error_of(document: Document, error: ValidationError) -> ScenarioError:
-    """The same faults in this project's words, each with its origin."""
-    return document.attributed(_fault(document.data, detail) for detail in error.errors(include_url=False))
-
-
-def _fault(data: Any, detail: ErrorDetails) -> Fault:
+def _fault(data: Any, detail: ErrorDetails, sections: Sections) -> Fault:
     kind, value = detail["type"], detail["input"]
-    section = _section(detail["loc"])
+    section = _section(detail["loc"], sections)
     path = _path(data, detail["loc"], named=kind in ("missing", "extra_forbidden"))
     message = MESSAGES.get(kind, "not allowed")
     if kind == "extra_forbidden":
@@ -52,10 +58,9 @@ def _words(detail: ErrorDetails) -> str:
     return detail["msg"].removeprefix("Input should be ").removeprefix("Value should be ").replace("'", "")
 
 
-def _section(loc: Path) -> type[Section]:
+def _section(loc: Path, sections: Sections) -> type[Section]:
     """The section around a location."""
-    names = (part for part in reversed(loc[:-1]) if part in SECTIONS)
-    return SECTIONS[name] if (name := next(names, None)) else SweepFile
+    return sections[next((part for part in reversed(loc[:-1]) if part in sections), "")]
 
 
 def _path(data: Any, loc: Path, named: bool) -> Path:

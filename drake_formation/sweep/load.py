@@ -1,23 +1,23 @@
 """Loading sweeps: the shipped ones by name, others from files or mappings; what is wrong is found before any run."""
 
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from drake_formation.config.errors import nearest, shown
 from drake_formation.scenario import Fault, ScenarioError, shipped_scenarios
 from drake_formation.scenario.load import find_file
 from drake_formation.scenario.overrides import apply, plain
-from drake_formation.scenario.source import Document, parse, read, read_text
+from drake_formation.scenario.source import Document, parse, read_text
 from drake_formation.scenario.validate import validate
 from drake_formation.sweep.axes import Axis, resolve
+from drake_formation.sweep.base import base_document, placed
 from drake_formation.sweep.coordinates import name_faults
 from drake_formation.sweep.definition import Sweep, probes
 from drake_formation.sweep.faults import parsed
 from drake_formation.sweep.limits import series_faults, size_faults, value_faults
-from drake_formation.sweep.schema import SweepFile
+from drake_formation.sweep.schema import SECTIONS, SweepFile
 
 
 def load_sweep(source: str | Path | Mapping[str, Any]) -> Sweep:
@@ -45,11 +45,11 @@ def load_sweep(source: str | Path | Mapping[str, Any]) -> Sweep:
         document = parse(text, str(path))
     if faults := list(value_faults(document.data)):
         raise document.attributed(faults)
-    model = parsed(document)
+    model = parsed(document, SweepFile, SECTIONS)
     if faults := list(size_faults(model.axes)):
         raise document.attributed(faults)
     axes = _axes(document, model)
-    base = _base(document, model, folder)
+    base = base_document(document, model.scenario, model.set, folder)
     sweep = Sweep(model.name, model.description, text, base, axes, model.trajectories)
     _check(sweep, document)
     return sweep
@@ -97,44 +97,6 @@ def _overlaps(axes: tuple[Axis, ...]) -> Iterator[Fault]:
             around |= dict.fromkeys(prefixes, path)
 
 
-def _base(document: Document, model: SweepFile, folder: Path) -> Document:
-    """The base scenario with the sweep's own values set in it, said to stand where the sweep file says them."""
-    origins = {path: document.origin(("set", path)) for path in model.set}
-    try:
-        base = _scenario_document(document, model.scenario, folder)
-        if faults := list(value_faults(base.data)):
-            raise base.attributed(faults)
-        base = apply(base, model.set)
-    except ScenarioError as error:
-        raise ScenarioError(_placed(error.faults, origins)) from None
-    names = {f"overrides[{path!r}]": origin for path, origin in origins.items()}
-    return replace(base, origins={place: names.get(origin, origin) for place, origin in base.origins.items()})
-
-
-def _scenario_document(document: Document, scenario: str | dict[str, Any], folder: Path) -> Document:
-    if isinstance(scenario, dict):
-        length = len(place := ("scenario",))
-        origins = {path[length:]: origin for path, origin in document.origins.items() if path[:length] == place}
-        return Document(document.name, scenario, origins)
-    shipped = shipped_scenarios()
-    path = folder / scenario
-    try:
-        exists = path.is_file()
-    except (OSError, ValueError) as error:
-        reason = (isinstance(error, OSError) and error.strerror) or str(error)
-        fault = Fault(("scenario",), f"not a usable path: {reason}", shown(scenario))
-        raise document.attributed([fault]) from error
-    if exists:
-        return read(path)
-    if scenario in shipped:
-        return read(shipped[scenario])
-    allowed = f"a file (relative to {folder.resolve()}), {', '.join(shipped)}"
-    fault = Fault(
-        ("scenario",), "no such file or shipped scenario", shown(scenario), allowed, nearest(scenario, shipped)
-    )
-    raise document.attributed([fault])
-
-
 def _check(sweep: Sweep, document: Document) -> None:
     """Refuse wrong values, each once; and wrong combinations if among the points checked there are no others."""
     wrong: dict[str, Fault] = {}
@@ -149,7 +111,7 @@ def _check(sweep: Sweep, document: Document) -> None:
         try:
             point = apply(sweep.base, sweep.overrides(index))
         except ScenarioError as error:
-            wrong |= {str(fault): fault for fault in _placed(error.faults, origins)}
+            wrong |= {str(fault): fault for fault in placed(error.faults, origins)}
             continue
         try:
             scenario = validate(point)
@@ -157,15 +119,9 @@ def _check(sweep: Sweep, document: Document) -> None:
         except ScenarioError as error:
             # Pydantic is the cause where a single value is wrong; nothing is where the combination is.
             found = combinations if error.__cause__ is None else wrong
-            found |= {str(fault): fault for fault in _placed(error.faults, origins)}
+            found |= {str(fault): fault for fault in placed(error.faults, origins)}
             continue
         if large := list(series_faults(sweep.trajectories, scenario, len(sweep))):
             raise document.attributed(large)
     if wrong or not sound:
         raise ScenarioError((wrong or combinations).values())
-
-
-def _placed(faults: Iterable[Fault], origins: Mapping[str, str]) -> list[Fault]:
-    """Faults of overrides, said to stand where the sweep file says their values."""
-    places = {f"overrides[{path!r}]": origin for path, origin in origins.items()}
-    return [replace(fault, origin=places.get(fault.origin, fault.origin)) for fault in faults]

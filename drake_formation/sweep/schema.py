@@ -34,6 +34,12 @@ def _scenario_kind(value: Any) -> str:
     return "mapping" if isinstance(value, dict) else "named"
 
 
+Base = Annotated[
+    Annotated[str, Tag("named")] | Annotated[dict[str, Any], Tag("mapping")], Discriminator(_scenario_kind)
+]
+"""A base scenario: by name, or as it stands in a file."""
+
+
 def _axis_kind(value: Any) -> Any:
     return value.get("kind", "grid") if isinstance(value, dict) else getattr(value, "kind", None)
 
@@ -128,9 +134,9 @@ class SweepFile(Section):
 
     name: Name = Field(description="short name: letters, digits, and _ . - after the first")
     description: str = Field(default="", description="what it shows")
-    scenario: Annotated[
-        Annotated[str, Tag("named")] | Annotated[dict[str, Any], Tag("mapping")], Discriminator(_scenario_kind)
-    ] = Field(description="the base: a file (relative to this one), the name of a shipped scenario, or a scenario")
+    scenario: Base = Field(
+        description="the base: a file (relative to this one), the name of a shipped scenario, or a scenario"
+    )
     set: dict[FieldPath, Any] = Field(default={}, description="values to replace in the base, by dotted path")
     axes: Annotated[tuple[AxisModel, ...], Field(strict=False, min_length=1)] = Field(
         description="what varies: axes of kind grid, zip, list or random, which multiply"

@@ -1,0 +1,51 @@
+"""``drake-formation compare``: one scenario under several laws, and the table of what came of each."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+from drake_formation.cli.app import app
+from drake_formation.cli.options import path
+from drake_formation.terminal import FAILED_RUN, WRONG_INPUT, say, stop
+
+
+@app.command()
+def compare(
+    source: Annotated[str, typer.Argument(metavar="COMPARISON", help="A comparison file, or a shipped one's name.")],
+    out: Annotated[
+        Path,
+        typer.Option(parser=path, metavar="FOLDER", help="For the tables (Markdown, CSV, LaTeX) and figures."),
+    ],
+    workers: Annotated[int | None, typer.Option(min=1, help="Number of processes; default: of processors.")] = None,
+) -> None:
+    """Run one scenario under several laws and compare them in a table and figures."""
+    from drake_formation.cli.comparison_folder import COMPARISON, summary, write_comparison
+    from drake_formation.compare import load_comparison, rows, run_comparison
+    from drake_formation.places import PICTURES, OutputError, reserved
+    from drake_formation.sweep import SweepStoppedError
+
+    comparison = load_comparison(source)
+    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed} / {task.total} runs"))
+    try:
+        with reserved(out, COMPARISON) as place:
+            with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True), transient=True) as progress:
+                task = progress.add_task(comparison.name, total=len(comparison.runs))
+                outcomes = run_comparison(
+                    comparison, workers=workers, progress=lambda done, _total: progress.update(task, completed=done)
+                )
+            table = rows(comparison, outcomes)
+            written = write_comparison(place, comparison, outcomes, table)
+    except OutputError as error:
+        stop(str(error), WRONG_INPUT)
+    except SweepStoppedError as error:
+        stop(str(error), FAILED_RUN)
+    for part in summary(comparison, table):
+        say(part)
+    failed = [outcome for outcome in outcomes if outcome.failure]
+    where = f"Tables in {written.folder}, figures in {written.folder / PICTURES}."
+    say("\n".join([*(f"{o.run.law}, {o.run.case}: {o.failure}" for o in failed), *written.remarks(), where]))
+    if len(failed) == len(outcomes):
+        raise SystemExit(FAILED_RUN)

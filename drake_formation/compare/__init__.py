@@ -1,0 +1,15 @@
+"""One scenario under several laws: the same starts, seeds and obstacles, and a table as a paper would have it.
+
+- ``schema``: what a comparison file may say.
+- ``comparison``: the runs that it means.
+- ``run``: running them.
+- ``table``: what came out, as Markdown, CSV and LaTeX.
+
+Figures are drawn by :mod:`drake_formation.viz.comparison_figures`.
+"""
+
+from drake_formation.compare.comparison import Comparison, load_comparison, shipped_comparisons
+from drake_formation.compare.run import Outcome, run_comparison
+from drake_formation.compare.table import rows
+
+__all__ = ["Comparison", "Outcome", "load_comparison", "rows", "run_comparison", "shipped_comparisons"]

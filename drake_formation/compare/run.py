@@ -1,0 +1,115 @@
+"""Running a comparison, one process a processor."""
+
+import os
+from collections.abc import Callable
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drake_formation.compare.comparison import Comparison, Run
+from drake_formation.measuring.metric import Value
+
+Array = NDArray[np.float64]
+
+KEPT = 400
+"""Samples of a run that figures are drawn of, at the most."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of a run.
+
+    Attributes:
+        run: which.
+        metrics: its figures by name; empty where it failed.
+        failure: why it failed; empty where it did not.
+        channels: channels over which a robot hears another, and whose state some law reads.
+        messages: messages a second over all of them; infinity where they are heard all the time.
+        times: sample times (s), shape (samples,).
+        position: of the robots (m), shape (samples, N, 2).
+        consensus_error: largest of any robot (m), shape (samples,).
+        carried: whether the object was carried, shape (samples,).
+    """
+
+    run: Run
+    metrics: dict[str, Value]
+    failure: str
+    channels: int
+    messages: float
+    times: Array
+    position: Array
+    consensus_error: Array
+    carried: NDArray[np.bool_]
+
+
+def run_comparison(
+    comparison: Comparison, *, workers: int | None = None, progress: Callable[[int, int], None] | None = None
+) -> list[Outcome]:
+    """Run a comparison; a run that fails is an outcome too.
+
+    Args:
+        comparison: from :func:`drake_formation.compare.load_comparison`.
+        workers: number of processes; that of processors if not given.
+        progress: called with the runs that are done and all there are.
+
+    Returns:
+        The outcomes in the order of the comparison's runs.
+    """
+    from drake_formation.sweep.processes import Processes
+
+    total = len(comparison.runs)
+    workers = min(workers or len(os.sched_getaffinity(0)), total)
+    with Processes(workers) as processes:
+        futures: list[Future[Outcome]] = [processes.call(run_one, run) for run in comparison.runs]
+        pending: set[Future[Outcome]] = set(futures)
+        while pending:
+            if progress:
+                progress(total - len(pending), total)
+            _, pending = wait(pending, timeout=0.5, return_when=FIRST_COMPLETED)
+        return [future.result() for future in futures]
+
+
+def run_one(run: Run) -> Outcome:
+    """Run one scenario of a comparison, by the engine that is the fastest for it."""
+    from drake_formation.measuring import metrics
+    from drake_formation.simulation import SimulationError, simulate
+    from drake_formation.vectors import length_of
+
+    failure, figures = "", dict[str, Value]()
+    try:
+        result = simulate(run.scenario)
+        figures = metrics(result).to_dict()
+    except SimulationError as error:
+        result, failure = error.partial, str(error)
+    channels, messages = traffic(run)
+    chosen = _thinned(len(result["time"]))
+    return Outcome(
+        run, figures, failure, channels, messages,
+        result["time"].values[chosen],
+        result["position"].values[chosen],
+        length_of(result["consensus_error"].values[chosen]).max(axis=1),
+        result["phase"].values[chosen] == 1,
+    )  # fmt: skip
+
+
+def traffic(run: Run) -> tuple[int, float]:
+    """Channels that some law reads, and messages a second over them: as often as a law that is sampled reads them."""
+    from drake_formation.diagram import robot_diagram
+    from drake_formation.scenario import resolve
+
+    formation = resolve(run.scenario)
+    channels, messages = 0, 0.0
+    for robot in range(formation.robots):
+        diagram = robot_diagram(formation, robot)
+        names = [diagram.get_input_port(k).get_name() for k in range(diagram.num_input_ports())]
+        heard = sum(name.startswith("channel_") for name in names)
+        period = getattr(formation.parts["coordination"][robot].config, "period", None)
+        channels += heard
+        messages += heard / period if period else (np.inf if heard else 0.0)
+    return channels, messages
+
+
+def _thinned(samples: int) -> NDArray[np.intp]:
+    return np.unique(np.linspace(0, max(samples - 1, 0), min(samples, KEPT)).astype(np.intp))

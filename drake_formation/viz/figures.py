@@ -199,9 +199,10 @@ def draw_obstacles(axes: Axes, result: xr.Dataset) -> None:
         radius = float(result["obstacle_radius"].sel(obstacle=obstacle))
         axes.plot([x], [y], "X", color=OBSTACLE_COLOUR, markersize=7, label=None if k else "obstacle")
         axes.add_patch(Circle((x, y), radius, color=OBSTACLE_COLOUR, alpha=0.5))
-        sensed = Circle((x, y), radius + reach, fill=False, linestyle="--", edgecolor="0.5")
-        sensed.set_label("" if k else "sensing range")
-        axes.add_patch(sensed)
+        if reach:
+            sensed = Circle((x, y), radius + reach, fill=False, linestyle="--", edgecolor="0.5")
+            sensed.set_label("" if k else "sensing range")
+            axes.add_patch(sensed)
 
 
 def draw_formation(axes: Axes, moment: xr.Dataset) -> None:

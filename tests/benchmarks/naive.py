@@ -7,6 +7,7 @@ import numpy as np
 from pydrake.systems.framework import BasicVector, LeafSystem
 
 from drake_formation import build_diagram
+from drake_formation.parts.avoidance.khatib import avoidance_force
 from drake_formation.parts.springs.hookean import Hookean
 from drake_formation.parts.tracking.lqr import lqr_force
 
@@ -97,9 +98,11 @@ class Consensus(LeafSystem):
 class Avoidance(LeafSystem):
     """The potential field."""
 
-    def __init__(self, field, obstacles, masked=False):
+    def __init__(self, field, obstacles, masked, law, neighbours):
         super().__init__()
+        assert law is avoidance_force
         assert not masked
+        assert not neighbours
         self.field, self.obstacles = field, obstacles
         self.DeclareVectorInputPort("state", 4)
         self.DeclareVectorInputPort("phase", 1)

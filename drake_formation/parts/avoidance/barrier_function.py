@@ -71,8 +71,8 @@ def barrier_force(
     one obstacle the constraint is ḧ + 2λ ḣ + λ² h ≥ 0, the exponential barrier function of relative degree two with
     both poles at −λ (Nguyen & Sreenath 2016, Sec. III).
 
-    It can always be met: where g = 0, between obstacles, Ḃ ≥ 0 whatever the force, as going round them only helps. So
-    while B ≥ 0, ‖f‖ is no more than the others' force and m λ ‖v‖ together.
+    While B ≥ 0 it can be met everywhere: where g = 0, between obstacles, Ḃ = c/λ ≥ 0 whatever the force. Then ‖f‖ is no
+    more than the others' force and m λ ‖v‖ together.
 
     Args:
         position: q of the robot (m).

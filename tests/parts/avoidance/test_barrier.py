@@ -7,7 +7,7 @@ from scipy.optimize import minimize
 from drake_formation import ScenarioError, load_scenario, simulate
 from drake_formation.analysis import certify
 from drake_formation.parts.avoidance.barrier_function import barrier_force, smooth_barrier
-from drake_formation.scenario import resolve
+from drake_formation.scenario import resolve, with_overrides
 from drake_formation.simulation.run import PreparedRun
 
 coordinates = st.floats(-3, 3)
@@ -146,6 +146,20 @@ def test_without_it_the_same_robots_come_too_near():
     assert simulate(free, engine="compiled")["clearance"].min() < 0.25
     kept = simulate(scene(around), engine="compiled")["clearance"].min()
     assert 0.3 - 1e-5 <= kept < 0.4
+
+
+@pytest.mark.parametrize("tracking", [{"kind": "lqr_discrete", "Q": 1e4, "period": 0.2}, {"kind": "lqi"}])
+def test_it_keeps_the_clearance_whatever_controller_it_corrects(tracking):
+    scenario = with_overrides(scene([{"position": [3.0, 0.5], "radius": 0.3}]), {"tracking": tracking})
+    kept = simulate(scenario, engine="compiled")["clearance"].min()
+    assert kept >= 0.3 - 1e-5
+
+
+def test_it_is_felt_in_transport_only():
+    """While they gather, a robot passes through what is no obstacle before the hand-off."""
+    changes = {"robots.start": [[0.0, -0.5], [3.0, 0.5]], "aggregation.duration": 4.0, "transport.duration": 0.5}
+    scenario = with_overrides(scene([{"position": [2.5, 0.5], "radius": 0.2}], clearance=0.2), changes)
+    assert simulate(scenario, engine="compiled")["clearance"].min() < 0.0
 
 
 @pytest.mark.parametrize("engine", ["compiled", "exponential"])

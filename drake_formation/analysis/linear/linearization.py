@@ -183,7 +183,7 @@ def at_rest(scenario: Scenario) -> Scenario:
         "avoidance.obstacles": [],
         "avoidance.sensing": "in_range",
     }
-    if resolve(scenario).start_velocities.any():
+    if getattr(scenario.robots, "velocity", None) not in (None, (0.0, 0.0)):
         changes["robots.velocity"] = [0.0, 0.0]
     return with_overrides(scenario, changes)
 

@@ -179,7 +179,7 @@ def at_rest(scenario: Scenario) -> Scenario:
         "transport.reference": {"kind": "set_point"},
         "avoidance": {"obstacles": []},
     }
-    if resolve(scenario).start_velocities.any():
+    if getattr(scenario.robots, "velocity", None) not in (None, (0.0, 0.0)):
         changes["robots.velocity"] = [0.0, 0.0]
     return with_overrides(scenario, changes)
 

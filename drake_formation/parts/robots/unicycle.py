@@ -48,9 +48,9 @@ def unicycle_motion(
 ) -> tuple[Scalar, ...]:
     """How the point moves by which a robot with differential drive holds the object.
 
-    Its axle's centre, L behind that point, moves along the heading θ alone: of the held point's velocity what is along
-    the heading drives it forward, and what is across turns it, L θ̇. The heading is left to itself; where the point is
-    drawn forward it falls in behind, as a trailer does.
+    Its centre of mass is the middle of its axle, L behind that point, and moves along the heading θ alone: of the held
+    point's velocity, what is along the heading drives it forward and what is across turns it, L θ̇. The heading is left
+    to itself; where the point is drawn forward it falls in behind, as a trailer does.
 
     Args:
         inner: heading θ (rad).

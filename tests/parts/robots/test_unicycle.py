@@ -3,12 +3,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
+from scipy.integrate import solve_ivp
 
 from drake_formation import ScenarioError, build_diagram, load_scenario, simulate
 from drake_formation.analysis import IllPosedError, linearize
 from drake_formation.parameters import find_block
 from drake_formation.parts.robots.point_mass import free_mass
-from drake_formation.parts.robots.unicycle import Unicycle, unicycle_motion
+from drake_formation.parts.robots.unicycle import Unicycle, linearizing_drive, unicycle_motion
 
 SHORT = {"aggregation.duration": 0.5, "transport.duration": 2.5, "springs.stiffness": 30.0, "robots.mass": [30.0, 50.0]}
 FIXED = {"simulator.use_error_control": False, "simulator.max_step_size": 0.05}
@@ -51,6 +52,34 @@ def test_limited_wheels_lose_no_energy_to_the_constraint(heading, velocity, spri
     twisting = (c * ay - s * ax - forward * turning) / AHEAD
     power = 40.0 * forward * speeding + 3.0 * turning * twisting
     assert power == pytest.approx(np.dot(spring, velocity), abs=1e-8)
+
+
+def test_it_moves_as_the_textbooks_axle_speed_and_turning_rate_do():
+    """The same robot in the coordinates of its axle, ẋ = v cos θ, ẏ = v sin θ, with wheels too weak to linearize it."""
+    part = Unicycle(Unicycle.Config(ahead=AHEAD, inertia=3.0, track=0.6, wheel_force_limit=8.0))
+    groups = [group.tolist() for group in part.own_numbers()]
+
+    def push(t):
+        return 40.0 * np.cos(t), 30.0 * np.sin(2 * t)
+
+    def held(t, state):
+        _, _, vx, vy, heading = state
+        return vx, vy, *unicycle_motion([heading], (vx, vy), push(t), (0.0, 0.0), *groups)
+
+    def axle(t, state):
+        _, _, heading, forward, turning = state
+        c, s = np.cos(heading), np.sin(heading)
+        ux, uy = push(t)
+        drive, torque = linearizing_drive(forward, turning, (c * ux + s * uy, c * uy - s * ux), (0.0, 0.0), groups[0])
+        right, left = np.clip([drive / 2 + torque / 0.6, drive / 2 - torque / 0.6], -8.0, 8.0)
+        return c * forward, s * forward, turning, (right + left) / 40.0, 0.3 * (right - left) / 3.0
+
+    options = {"rtol": 1e-10, "atol": 1e-12, "max_step": 0.01}
+    x, y, _, _, heading = solve_ivp(held, (0.0, 3.0), [AHEAD, 0.0, 0.2, 0.06, 0.0], **options).y[:, -1]
+    cx, cy, turned, _, _ = solve_ivp(axle, (0.0, 3.0), [0.0, 0.0, 0.0, 0.2, 0.06 / AHEAD], **options).y[:, -1]
+    assert abs(turned) > 0.1
+    expected = cx + AHEAD * np.cos(turned), cy + AHEAD * np.sin(turned), turned
+    assert (x, y, heading) == pytest.approx(expected, abs=1e-6)
 
 
 @pytest.mark.parametrize("engine", ["blocks", "compiled"])

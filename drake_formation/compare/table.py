@@ -23,6 +23,8 @@ COLUMNS = {
 
 MORE_IS_BETTER = ("min_clearance_m",)
 DIGITS = 3
+ROUNDING = 1e-9
+"""A deviation of so small a part of the mean is rounding."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +45,7 @@ class Cell:
         """Mean and, where there are several runs, deviation."""
         if math.isnan(self.mean):
             return "–"
-        return f"{self.mean:.{DIGITS}g}" + (f" ± {self.spread:.2g}" if self.spread else "")
+        return f"{self.mean:.{DIGITS}g}" + (f" ± {self.spread:.2g}" if self.spread > ROUNDING * abs(self.mean) else "")
 
 
 @dataclass(frozen=True)

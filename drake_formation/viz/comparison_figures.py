@@ -43,7 +43,7 @@ def law_colours(comparison: Comparison) -> dict[str, str]:
 
 def paths(comparison: Comparison, outcomes: Sequence[Outcome]) -> Figure:
     """Where the robots go while they carry the object, the first run of every law; a panel a case."""
-    figure, panels = _panels(comparison, height=3.4)
+    figure, panels = _panels(comparison, height=1.9)
     for axes, own in _by_case(comparison, outcomes, panels):
         firsts = {outcome.run.law: outcome for outcome in reversed(own)}
         for law, colour in law_colours(comparison).items():
@@ -53,7 +53,8 @@ def paths(comparison: Comparison, outcomes: Sequence[Outcome]) -> Figure:
             axes.plot([ox], [oy], "X", color="0.25", markersize=7)
             axes.add_patch(Circle((ox, oy), radius, color="0.25", alpha=0.5))
         axes.set(ylabel="y (m)")
-        axes.set_aspect("equal", adjustable="datalim")
+        axes.set_aspect("equal")
+        axes.margins(0.02, 0.1)
     panels[-1].set_xlabel("x (m)")
     _legend(figure, comparison)
     return figure
@@ -104,7 +105,7 @@ def _beats(one: tuple[float, float], other: tuple[float, float]) -> bool:
 def _panels(comparison: Comparison, height: float) -> tuple[Figure, list[Axes]]:
     """A panel a case, one above the other."""
     count = len(comparison.cases)
-    figure = Figure(figsize=(9, height * count + 0.4), layout="constrained")
+    figure = Figure(figsize=(9, height * count + 0.9), layout="constrained")
     panels = list(np.ravel(figure.subplots(count, squeeze=False)))
     for axes, case in zip(panels, comparison.cases, strict=True):
         axes.grid(alpha=0.3)
@@ -125,4 +126,4 @@ def _legend(figure: Figure, comparison: Comparison) -> None:
     from matplotlib.lines import Line2D
 
     lines = [Line2D([], [], color=colour, linewidth=3, label=law) for law, colour in law_colours(comparison).items()]
-    figure.legend(handles=lines, loc="outside right upper", fontsize="small", frameon=False)
+    figure.legend(handles=lines, loc="outside lower center", ncols=4, fontsize="small", frameon=False)

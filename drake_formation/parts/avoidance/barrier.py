@@ -97,7 +97,12 @@ class Barrier(Part):
         )
 
     def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:
-        """Whether the robot keeps the clearance where obstacles begin to be felt."""
+        """Whether the robot keeps the clearance where obstacles begin to be felt, and moves as the forces on it say."""
+        robot = formation.parts["robot"][owner].config
+        for name in ("drag", "wheel_force_limit"):
+            if value := getattr(robot, name, None):
+                message = f"the barrier takes robot {owner + 1} for a mass that its forces alone move, without limit"
+                yield Fault(("..", "robots", name), message, shown(value), "not given, or another avoidance.kind")
         if not len(formation.obstacles) or (formation.robots > 1 and not formation.slots.any()):
             return  # slots that coincide are told of already
         start = formation.starts[owner]

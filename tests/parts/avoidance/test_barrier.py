@@ -179,3 +179,14 @@ def test_the_analysis_is_of_a_formation_that_feels_no_obstacle():
     assert certificate.stable
     assert resolve(certificate.formation.scenario).obstacles.size == 0
     assert any(line.startswith("avoidance") for line in certificate.to_dict()["not_covered"])
+
+
+WEAK = {"wheel_force_limit": 20.0}
+
+
+@pytest.mark.parametrize("robots", [{"drag": 3.0}, {"kind": "omnidirectional"} | WEAK, {"kind": "unicycle"} | WEAK])
+def test_a_robot_that_its_forces_alone_do_not_move_is_refused(robots):
+    changes = {f"robots.{name}": value for name, value in robots.items()}
+    changes["avoidance"] = {"kind": "barrier", "obstacles": [{"position": [9.0, 9.0]}]}
+    with pytest.raises(ScenarioError, match=r"robots\.(drag|wheel_force_limit): the barrier takes robot 1 for a mass"):
+        load_scenario("line", overrides=changes)

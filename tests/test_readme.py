@@ -3,6 +3,10 @@
 import re
 from pathlib import Path
 
+from drake_formation.compare import load_comparison
+from drake_formation.parts import kinds
+from drake_formation.parts.roles import ROLES
+
 README = Path(__file__).parents[1] / "README.md"
 
 
@@ -11,3 +15,21 @@ def test_python_example_runs(capsys):
     assert len([line for line in example.splitlines() if line]) == 5
     exec(compile(example, str(README), "exec"), {})
     assert "consensus_error_m=0.09" in capsys.readouterr().out
+
+
+def test_every_part_has_its_line_in_the_table():
+    text = README.read_text(encoding="utf-8")
+    table = text.split("## Parts")[1].split("## ")[0]
+    for role, its in ROLES.items():
+        for kind, part in kinds(role).items():
+            if part.distribution == "drake-formation":
+                assert f"`{kind}`" in table, (role, kind)
+
+
+def test_the_table_of_laws_has_the_shipped_comparisons_laws():
+    text = README.read_text(encoding="utf-8")
+    (table,) = re.findall(r"<!-- coordination -->\n(.*?)<!-- /coordination -->", text, re.DOTALL)
+    comparison = load_comparison("coordination")
+    for case in comparison.cases:
+        rows = table.split(f"**{case}**")[1].split("\n\n")[1]
+        assert [line.split(" | ")[0].removeprefix("| ") for line in rows.splitlines()[2:]] == list(comparison.laws)

@@ -32,7 +32,10 @@ ROBOT_OUTPUTS = (
 ACCELERATION = "acceleration"
 """An output port of such robots as do not move as the forces on them by their mass say."""
 
-PORT_ORDER = ("phase", "reference", "spring", "channel", "sensed")
+OBJECT_OUTPUTS = ("pose", "strain")
+"""Output ports of the carried object, where it is a body of its own, after ``object_``."""
+
+PORT_ORDER = ("phase", "reference", "spring", "load", "channel", "sensed")
 """Input ports of every robot, by the stem of their names, as far as its blocks have them."""
 
 
@@ -45,7 +48,9 @@ def build_diagram(scenario: Scenario) -> Diagram:
     ports, for every robot i from 1: ``robot_i_state`` (m, m/s), ``robot_i_tracking_error`` x − x_r (m, m/s),
     ``robot_i_consensus_error`` (m), and in newtons ``robot_i_tracking_force`` u_l, ``robot_i_consensus_force`` u_g,
     ``robot_i_avoidance_force``, ``robot_i_control_force`` (the sum of the three) and ``robot_i_spring_force``; of
-    robots that are no free masses ``robot_i_acceleration`` (m/s²); and ``phase`` (0 aggregation, 1 transport).
+    robots that are no free masses ``robot_i_acceleration`` (m/s²); of an object that is a body of its own
+    ``object_pose`` (x, y, heading and their rates; m, rad) and ``object_strain``; and ``phase`` (0 aggregation, 1
+    transport).
 
     Args:
         scenario: what to build.
@@ -78,6 +83,8 @@ def wired(formation: Formation) -> Diagram:
                 builder.Connect(reference.GetOutputPort("centre"), robot.GetInputPort(name))
             elif stem == "spring":
                 builder.Connect(robots[int(number) - 1].GetOutputPort("state"), robot.GetInputPort(name))
+    if formation.has_body:
+        _carry(builder, phase, robots, formation, parameters)
     _talk(builder, phase, robots, formation, parameters)
     if any("sensed" in _input_names(robot) for robot in robots):
         _sense_nearest(builder, robots, parameters)
@@ -102,8 +109,8 @@ def robot_diagram(formation: Formation, robot: int) -> Diagram:
 
     Returns:
         The robot, with the input ports that its blocks ask for, of ``phase``, ``reference``, ``spring_j``,
-        ``channel_j`` and ``sensed``, and the output ports named in ``ROBOT_OUTPUTS``, and ``ACCELERATION`` where its
-        plant has it.
+        ``load``, ``channel_j`` and ``sensed``, and the output ports named in ``ROBOT_OUTPUTS``, and ``ACCELERATION``
+        where its plant has it.
 
     Raises:
         PartError: a part has not the ports that its role asks for.
@@ -161,6 +168,8 @@ def _added(
     """The block of a part, added under the last name of its path; its ports are those of its role."""
     part: Part = formation.parts[role][owner]
     block = part.block(formation, owner, parameters.get(path, ()))
+    if block is None:
+        raise PartError(f"{part.called()}: it has no block")
     _require_ports(ROLES[role], part, block)
     return builder.AddNamedSystem(path.rsplit("/", maxsplit=1)[-1], block)
 
@@ -191,6 +200,27 @@ def _port_order(name: str) -> tuple[int, int]:
 def _phase(formation: Formation) -> System:
     """The hand-off, or a constant where the scenario starts at transport."""
     return HandOff(formation.hand_off) if formation.aggregation_duration else ConstantVectorSource([1.0])
+
+
+def _carry(
+    builder: DiagramBuilder, phase: System, robots: list[Diagram], formation: Formation, parameters: Parameters
+) -> None:
+    """Wire an object that is a body of its own to the robots that hold it."""
+    (part,) = formation.parts["object"]
+    block = _added(builder, "object", formation, 0, parameters, "object")
+    for name in _input_names(block):
+        _, _, number = name.rpartition("_")
+        source = robots[int(number) - 1].GetOutputPort("state") if number.isdecimal() else phase.get_output_port()
+        builder.Connect(source, block.GetInputPort(name))
+    for i, robot in enumerate(robots):
+        name, plant = f"grip_force_{i + 1}", formation.parts["robot"][i]
+        if not block.HasOutputPort(name):
+            raise PartError(f"{part.called()}: its block has no output port {name!r} for robot {i + 1}")
+        if not robot.HasInputPort("load"):
+            raise PartError(f"{plant.called()}: its block has no input port 'load' for what {part.called()} exerts")
+        builder.Connect(block.GetOutputPort(name), robot.GetInputPort("load"))
+    for name in OBJECT_OUTPUTS:
+        builder.ExportOutput(block.GetOutputPort(name), f"object_{name}")
 
 
 def _talk(

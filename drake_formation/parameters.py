@@ -33,7 +33,9 @@ def channel_name(listener: int, speaker: int) -> str:
 
 def placed_parts(formation: Formation) -> Iterator[tuple[str, Part, int]]:
     """Every part that may have a block: its path in the diagram, the part, and its owner."""
-    yield "reference", formation.parts["reference"][0], 0
+    for name, role in ROLES.items():
+        if role.owner == "formation":
+            yield role.block, formation.parts[name][0], 0
     for i in range(formation.robots):
         for name, role in ROLES.items():
             if role.owner == "robot":
@@ -134,9 +136,9 @@ def structure(formation: Formation) -> dict[str, Any]:
         "law": _identity(formation.law),
     }
     numbers = block_parameters(formation)
-    for path, part, _ in placed_parts(formation):
+    for path, part, owner in placed_parts(formation):
         sizes = [np.size(group) for group in numbers.get(path, ())]
-        result[path] = (_identity(type(part)), part.structure(), sizes)
+        result[path] = (_identity(type(part)), part.structure(), part.layout(formation, owner), sizes)
     return result
 
 

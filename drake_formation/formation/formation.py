@@ -12,6 +12,9 @@ from drake_formation.formation.links import Channels, Edges
 
 Array = NDArray[np.float64]
 
+SPRINGS = "springs"
+"""The kind of object that has no block: springs between robots, which their plants carry out."""
+
 
 @dataclass(frozen=True, eq=False)
 class Formation:
@@ -25,7 +28,7 @@ class Formation:
         starts: where the robots start (m), shape (N, 2).
         centre: where the formation gathers, the mean of the starts (m), shape (2,).
         goal: where the formation centre is carried to (m), shape (2,).
-        springs: which robots the object couples, E edges.
+        springs: which robots the object couples, E edges; none where it is a body of its own.
         channels: which robots hear which, C channels with weights.
         obstacles: x, y and radius of each (m), shape (M, 3).
         begin: when the scenario begins (s).
@@ -33,7 +36,7 @@ class Formation:
         transport_duration: how long they carry after it (s).
         law: the part by whose law the object's springs act.
         parts: the parts of every role: one a robot, one an edge for ``spring``, one a channel for ``channel``, and one
-            in all for ``reference``.
+            in all for ``reference`` and ``object``.
     """
 
     name: str
@@ -73,6 +76,11 @@ class Formation:
     def end(self) -> float:
         """When the scenario ends (s)."""
         return self.hand_off + self.transport_duration
+
+    @property
+    def has_body(self) -> bool:
+        """Whether the carried object is a body of its own, which exerts a load, and not springs between robots."""
+        return bool(self.parts["object"][0].kind != SPRINGS)
 
     @cached_property
     def radius(self) -> float:

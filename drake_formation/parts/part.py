@@ -88,6 +88,10 @@ class Part:
         """What a new block is needed for when it changes: all that is configured and not a number."""
         return ()
 
+    def layout(self, formation: Formation, owner: int) -> Hashable:  # noqa: ARG002
+        """What of the formation, beyond its graphs, a new block is needed for when it changes; nothing by default."""
+        return ()
+
     def block(self, formation: Formation, owner: int, numbers: Numbers) -> System | None:
         """The block in double; it converts to AutoDiffXd and Expression.
 

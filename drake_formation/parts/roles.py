@@ -36,6 +36,7 @@ REFERENCE = Port("reference", 6, "motion of the formation centre [p; ṗ; p̈] (
 SENSED = Port("sensed", None, "for each obstacle 1 where no robot is nearer to it, else 0")
 HEARD = Port("channel_j", STATE, "the state that robot j sends, for every robot heard (m, m/s)")
 HELD = Port("spring_j", STATE, "the state of robot j, for every robot that the object couples (m, m/s)")
+LOAD = Port("load", 2, "what an object that is a body of its own exerts on the robot (N)")
 FORCE = Port("force", 2, "control force (N)", required=True)
 NOMINAL = Port("nominal", 2, "sum of the forces of the robot's controllers that do not ask for it (N)")
 OBJECT = Port("spring_force", 2, "what the object exerts on the robot (N)")
@@ -77,7 +78,7 @@ ROLES: dict[str, Role] = {
             "plant",
             "point_mass",
             "robot",
-            (FORCE, PHASE, HELD),
+            (FORCE, PHASE, HELD, LOAD),
             (
                 Port("state", STATE, "position and velocity where it holds the object (m, m/s)", required=True),
                 Port("spring_force", 2, "what the object exerts on the robot (N)", required=True),
@@ -104,6 +105,19 @@ ROLES: dict[str, Role] = {
             "formation",
             (PHASE,),
             (Port("centre", 6, "motion of the formation centre [p; ṗ; p̈] (m, m/s, m/s²)", required=True),),
+        ),
+        Role(
+            "object",
+            ("object",),
+            "object",
+            "springs",
+            "formation",
+            (Port("state_j", STATE, "the state of robot j, for every robot (m, m/s)"), PHASE),
+            (
+                Port("grip_force_j", 2, "what it exerts on robot j, zero during aggregation (N)", required=True),
+                Port("pose", 6, "place of its centre, heading, and their rates (m, rad, m/s, rad/s)", required=True),
+                Port("strain", 1, "how far it is strained, as a share of its size (1)", required=True),
+            ),
         ),
         Role(
             "channel",

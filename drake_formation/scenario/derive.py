@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.formation import graphs, shapes
+from drake_formation.formation.formation import SPRINGS
 from drake_formation.formation.links import Channels, Edges
 from drake_formation.scenario.schema import (
     FormationStart,
@@ -88,7 +89,9 @@ def _edges(graph: nx.Graph) -> Edges:
 
 
 def spring_edges(scenario: Scenario) -> Edges:
-    """The edges of the physical graph."""
+    """The edges of the physical graph; none where the object is a body of its own."""
+    if scenario.object.kind != SPRINGS:
+        return _edges(graph((), robot_count(scenario.formation)))
     return _edges(spring_graph(scenario))
 
 

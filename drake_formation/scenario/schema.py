@@ -7,9 +7,10 @@ Sources: *published* is printed in the paper, *inferred* follows from what it pr
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import Discriminator, Field, SerializerFunctionWrapHandler, Tag, model_serializer
 
 from drake_formation.config.values import Edge, Graph, Length, NonNegative, Point, Positive, Section, TopologyName
+from drake_formation.formation.formation import SPRINGS
 from drake_formation.parts.registry import when_changed
 from drake_formation.scenario.written import PartOf, rebuild_sections
 
@@ -224,8 +225,12 @@ class Scenario(Section):
     description: str = Field(default="", description="what it shows")
     formation: Shape = Field(description="shape of the formation: a slot for every robot")
     robots: Annotated[Any, PartOf("robot", Robots)] = Field(description="the plants")
+    object: Annotated[Any, PartOf("object")] = Field(
+        default_factory=PartOf("object").default,
+        description="what the carried object is: springs, as their section says, or a body of its own; paper: springs",
+    )
     springs: Annotated[Any, PartOf("spring", Springs)] = Field(
-        default_factory=PartOf("spring", Springs).default, description="the carried object"
+        default_factory=PartOf("spring", Springs).default, description="the carried object where it is springs"
     )
     tracking: Annotated[Any, PartOf("tracking")] = Field(
         default_factory=PartOf("tracking").default, description="the local controllers"
@@ -239,6 +244,14 @@ class Scenario(Section):
     aggregation: Aggregation = Aggregation()
     transport: Transport
     simulator: Simulation = Simulation()
+
+    @model_serializer(mode="wrap")
+    def _as_it_may_be_written(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Without springs where the object is none."""
+        written: dict[str, Any] = handler(self)
+        if self.object.kind != SPRINGS and "springs" not in self.model_fields_set:
+            written.pop("springs", None)
+        return written
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled as what was written: sections follow the parts there are, and have no place in a module."""

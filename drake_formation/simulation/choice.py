@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.formation.formation import Formation
+from drake_formation.parts.objects.carried import CarriedObject
 from drake_formation.parts.tracking.lqr import Lqr, lqr_gain
 from drake_formation.scenario import Scenario, ScenarioError, resolve
 from drake_formation.simulation.phases import felt_obstacles
@@ -61,6 +62,7 @@ def blocks_seconds(scenario: Scenario) -> float:
     """How long the blocks take for a scenario, about (s)."""
     formation = resolve(scenario)
     couplings = len(formation.springs.pairs) + len(formation.channels.pairs) / 2
+    couplings += 2 * formation.robots * formation.has_body  # the object reads each robot, and it feels its grip
     step: float = formation.robots * (ROBOT_SECONDS + OBSTACLE_SECONDS * len(formation.obstacles))
     step += COUPLING_SECONDS * couplings
     transports = 2 if felt_obstacles(formation) else 1
@@ -107,7 +109,9 @@ def _largest_rates(formation: Formation, carrying: bool) -> tuple[float, float]:
     if carrying:
         stiffness += 2 * _sums(formation, "stiffness")
         damping += 2 * _sums(formation, "damping")
-    return float((stiffness / masses).max()), float((damping / masses).max())
+    (carried,) = formation.parts["object"]
+    body = carried.fastest(formation) if carrying and isinstance(carried, CarriedObject) else (0.0, 0.0)
+    return float((stiffness / masses).max()) + body[0], float((damping / masses).max()) + body[1]
 
 
 def _each(formation: Formation, role: str, name: str) -> Array:

@@ -7,11 +7,10 @@ from pydrake.systems.framework import Context, Diagram
 from drake_formation.config.errors import Fault, shown
 from drake_formation.diagram import ACCELERATION
 from drake_formation.lowering import CompiledDiagram, Status, lower
-from drake_formation.parameters import robot_name
 from drake_formation.scenario import Scenario, ScenarioError, resolve
 from drake_formation.simulation.engine import Start
 from drake_formation.simulation.phases import Progress, felt_obstacles
-from drake_formation.simulation.recorder import RECORDED, NonFiniteStateError, telling
+from drake_formation.simulation.recorder import NonFiniteStateError, recorded_ports, telling
 
 Array = NDArray[np.float64]
 
@@ -139,10 +138,8 @@ class CompiledRecording:
 
     def __init__(self, lowered: CompiledDiagram, robots: int) -> None:
         self._lowered = lowered
-        self._ports = {name: [f"{robot_name(i)}_{name}" for i in range(robots)] for name in RECORDED}
+        self._ports = recorded_ports(lowered.diagram, robots)
         self._telling = telling(lowered.diagram, robots)
-        if self._telling:
-            self._ports[ACCELERATION] = list(self._telling.values())
         self._sizes = {name: lowered.diagram.GetOutputPort(ports[0]).size() for name, ports in self._ports.items()}
         self._times: list[Array] = []
         self._pieces: list[dict[str, Array]] = []

@@ -7,13 +7,17 @@ import numpy as np
 from numpy.typing import NDArray
 from pydrake.systems.framework import Context, Diagram, EventStatus
 
-from drake_formation.diagram import ACCELERATION
+from drake_formation.diagram import ACCELERATION, OBJECT_OUTPUTS
 from drake_formation.parameters import robot_name
 
 Array = NDArray[np.float64]
 
 RECORDED = ("state", "tracking_error", "tracking_force", "consensus_force", "avoidance_force", "spring_force")
 """Output ports of every robot that a run records; the rest follows from them, and from ``ACCELERATION`` where it is."""
+
+
+OBJECT = tuple(f"object_{name}" for name in OBJECT_OUTPUTS)
+"""Output ports of an object that is a body of its own, which are recorded as those of one robot are."""
 
 
 class NonFiniteStateError(ArithmeticError):
@@ -32,7 +36,7 @@ class Recording(Protocol):
         """0 during aggregation, 1 during transport; shape (samples,)."""
 
     def series(self, port: str) -> Array:
-        """Values of one of the ports ``RECORDED``, shape (samples, N, size)."""
+        """Values of one of the ports ``RECORDED``, or of ``OBJECT`` with N = 1, shape (samples, N, size)."""
 
     def accelerations(self) -> dict[int, Array]:
         """Acceleration of each robot that has such a port (m/s²), from 0, each of shape (samples, 2)."""
@@ -42,6 +46,14 @@ def telling(diagram: Diagram, robots: int) -> dict[int, str]:
     """The ports ``ACCELERATION`` of a formation diagram, by robot from 0."""
     ports = {i: f"{robot_name(i)}_{ACCELERATION}" for i in range(robots)}
     return {i: name for i, name in ports.items() if diagram.HasOutputPort(name)}
+
+
+def recorded_ports(diagram: Diagram, robots: int) -> dict[str, list[str]]:
+    """What is recorded of a formation diagram: its output ports by what they tell, one a robot or one in all."""
+    ports = {name: [f"{robot_name(i)}_{name}" for i in range(robots)] for name in RECORDED}
+    if told := telling(diagram, robots):
+        ports[ACCELERATION] = list(told.values())
+    return ports | {name: [name] for name in OBJECT if diagram.HasOutputPort(name)}
 
 
 class Recorder:
@@ -54,12 +66,9 @@ class Recorder:
     """
 
     def __init__(self, diagram: Diagram, robots: int, progress: Callable[[float], None] | None = None) -> None:
-        self._ports = {
-            name: [diagram.GetOutputPort(f"{robot_name(i)}_{name}") for i in range(robots)] for name in RECORDED
-        }
+        ports = recorded_ports(diagram, robots)
+        self._ports = {name: [diagram.GetOutputPort(port) for port in its] for name, its in ports.items()}
         self._telling = telling(diagram, robots)
-        if self._telling:
-            self._ports[ACCELERATION] = [diagram.GetOutputPort(name) for name in self._telling.values()]
         self._phase = diagram.GetOutputPort("phase")
         self._progress = progress
         self._times: list[float] = []

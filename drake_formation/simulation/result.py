@@ -29,7 +29,7 @@ VARIABLES = {
     "consensus_force": (VECTOR, "N", "global control u_g (Eq. 15)"),
     "avoidance_force": (VECTOR, "N", "obstacle avoidance"),
     "control_force": (VECTOR, "N", "control u, the sum of the three (Eq. 8)"),
-    "spring_force": (VECTOR, "N", "what the springs exert on a robot"),
+    "spring_force": (VECTOR, "N", "what the object exerts on a robot"),
     "spring_length": (("time", "spring"), "m", "length d of a spring"),
     "rest_length": (("spring",), "m", "length r of a spring at rest"),
     "clearance": (("time", "robot", "obstacle"), "m", "distance to an obstacle"),
@@ -42,6 +42,13 @@ VARIABLES = {
 }
 """Dimensions, unit and meaning of each variable."""
 
+POSE = ("x", "y", "heading", "x_rate", "y_rate", "heading_rate")
+OBJECT_VARIABLES = {
+    "object_pose": (("time", "pose"), "m, m, rad, m/s, m/s, rad/s", "place and heading of the object and their rates"),
+    "object_strain": (("time",), "1", "strain of the object"),
+}
+"""Those there are where the object is a body of its own."""
+
 
 def labelled_result(series: Series) -> "xr.Dataset":
     """Label what came out of a run.
@@ -51,16 +58,18 @@ def labelled_result(series: Series) -> "xr.Dataset":
 
     Returns:
         A dataset over ``time`` (every step of the integrator), ``robot`` (from 1), ``axis`` (x, y), ``spring``
-        (``1-2``) and ``obstacle`` (from 1). ``deviation`` is NaN before the hand-off. A sample
+        (``1-2``) and ``obstacle`` (from 1); an object that is a body of its own has ``object_pose`` over ``pose``, and
+        ``object_strain``, as its kind says. ``deviation`` is NaN before the hand-off. A sample
         at the hand-off shows what is so from then on. Between samples the motion is the quintic with position,
         velocity and acceleration at both ends; :func:`drake_formation.measuring.metrics` measures that. The attribute
         ``remark`` says what to know about the run, if there is anything.
     """
     import xarray as xr  # slow to import, and not needed to build a diagram
 
+    has_body = resolve(series.scenario).has_body
     variables = {
         name: xr.Variable(dimensions, series[name], {"units": units, "long_name": meaning})
-        for name, (dimensions, units, meaning) in VARIABLES.items()
+        for name, (dimensions, units, meaning) in (VARIABLES | (OBJECT_VARIABLES if has_body else {})).items()
     }
     variables["phase"] = variables["phase"].astype(np.int8)
     scenario = series.scenario
@@ -72,6 +81,8 @@ def labelled_result(series: Series) -> "xr.Dataset":
         "spring": [f"{i + 1}-{j + 1}" for i, j in formation.springs.pairs.tolist()],
         "obstacle": np.arange(1, len(series["obstacle_radius"]) + 1),
     }
+    if has_body:
+        coordinates["pose"] = list(POSE)
     attributes = {
         "title": scenario.name,
         "scenario": to_yaml(scenario),

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from drake_formation.scenario import Scenario, resolve
 from drake_formation.simulation.choice import Choice
 from drake_formation.simulation.motion import Motion
-from drake_formation.simulation.recorder import Recording
+from drake_formation.simulation.recorder import OBJECT, Recording
 from drake_formation.systems.consensus_error import consensus_errors
 from drake_formation.vectors import length_of
 
@@ -79,6 +79,9 @@ def time_series(scenario: Scenario, choice: Choice, run: Recording, nominal: Rec
         "obstacle_position": obstacles[:, :2],
         "obstacle_radius": obstacles[:, 2],
     }
+    if formation.has_body:
+        pose, strain = (run.series(name)[:, 0] for name in OBJECT)
+        arrays |= {"object_pose": pose, "object_strain": strain[:, 0]}
     return Series(arrays, scenario, choice)
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from pydrake import symbolic
+from pydrake.math import arctan2
 from pydrake.symbolic import Expression
 
 Scalar = Any
@@ -21,6 +22,11 @@ def sin(x: Scalar) -> Scalar:
 def cos(x: Scalar) -> Scalar:
     """Cosine of an angle (rad), of any scalar or an array of floats."""
     return math.cos(x) if isinstance(x, float) else np.cos(x) if isinstance(x, np.ndarray) else x.cos()
+
+
+def atan2(y: Scalar, x: Scalar) -> Scalar:
+    """Angle of the vector (x, y) from the x axis (rad), of any scalar."""
+    return arctan2(y, x)
 
 
 def at_least(x: Scalar, bound: Scalar) -> Scalar:

@@ -29,6 +29,17 @@ def require_linear_consensus(formation: Formation) -> None:
         raise IllPosedError("channels are not ideal; what is certified are wires")
 
 
+def require_springs(formation: Formation) -> None:
+    """A carried object that is springs between robots.
+
+    Raises:
+        IllPosedError: it is a body of its own.
+    """
+    if formation.has_body:
+        (part,) = formation.parts["object"]
+        raise IllPosedError(f"the carried object is {part.kind!r}; what is certified are springs")
+
+
 def require_free_masses(formation: Formation) -> None:
     """Robots that move as the forces on them by their mass say.
 

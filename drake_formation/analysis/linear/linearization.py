@@ -14,7 +14,11 @@ from pydrake.autodiffutils import ExtractGradient, InitializeAutoDiff
 from pydrake.systems.framework import Context, Diagram
 from pydrake.systems.primitives import Linearize
 
-from drake_formation.analysis.linear.assumptions import require_free_masses, require_linear_consensus
+from drake_formation.analysis.linear.assumptions import (
+    require_free_masses,
+    require_linear_consensus,
+    require_springs,
+)
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.diagram import build_diagram
 from drake_formation.formation.formation import Formation
@@ -114,6 +118,7 @@ def linearize(scenario: Scenario) -> LinearFormation:
     """
     rest = at_rest(scenario)
     formation = resolve(rest)
+    require_springs(formation)
     require_free_masses(formation)
     require_linear_consensus(formation)
     diagram = build_diagram(rest)

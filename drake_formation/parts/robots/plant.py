@@ -30,10 +30,11 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
 
         Its state is [q; v; z]: position and velocity of that point in the world frame (m, m/s), and the inner states
         of its dynamics, such as a heading. Input ports: ``force`` (N, size 2), ``phase`` (0 aggregation, 1 transport:
-        the springs are engaged) and, per neighbour j, ``spring_j`` (the neighbour's state, size 4). Output ports:
-        ``state`` x = [q; v], ``spring_force`` −Σ F_ij (N) and, unless it is the sum of the forces by the mass,
-        ``acceleration`` v̇ (m/s²). Parameters: the groups of the dynamics; last, for each neighbour in port order the
-        numbers of the spring law and the desired displacement h_i − h_j (m, two numbers).
+        the springs are engaged), per neighbour j ``spring_j`` (the neighbour's state, size 4), and where the object is
+        a body of its own ``load``, what that exerts (N, size 2). Output ports: ``state`` x = [q; v], ``spring_force``
+        −Σ F_ij and the load (N) and, unless it is the sum of the forces by the mass, ``acceleration`` v̇ (m/s²).
+        Parameters: the groups of the dynamics; last, for each neighbour in port order the numbers of the spring law
+        and the desired displacement h_i − h_j (m, two numbers).
         """
 
         def _construct(
@@ -46,6 +47,7 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             initial_state: ArrayLike,
             *,
             acceleration: bool = True,
+            load: bool = False,
             converter: Any = None,
         ) -> None:
             """Make the plant.
@@ -58,18 +60,20 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
                 springs: numbers of the law and displacement of each spring, shape (neighbours, numbers + 2).
                 initial_state: default state [q; v; z], shape (4 + inner states,).
                 acceleration: whether to have that output port.
+                load: whether to have that input port.
                 converter: for Drake's scalar conversion.
             """
             LeafSystem_[T].__init__(self, converter=converter)
             self.arguments = (dynamics, neighbours, law, numbers, springs, initial_state)
-            self.acceleration = acceleration
-            self.kind = dynamics, law  # all else that it computes with is a parameter
+            self.acceleration, self.load = acceleration, load
+            self.kind = dynamics, law, load  # all else that it computes with is a parameter
             self._dynamics, self._law = dynamics, law.law
             self._groups, self._columns = range(len(numbers)), len(law.Config.model_fields) + 2
             self._zero = T(0.0)
             self._force = self.DeclareVectorInputPort("force", 2)
             self._phase = self.DeclareVectorInputPort("phase", 1)
             self._springs = [self.DeclareVectorInputPort(f"spring_{j}", 4) for j in neighbours]
+            self._load = self.DeclareVectorInputPort("load", 2) if load else None
             for group in (*numbers, springs):
                 self.DeclareNumericParameter(BasicVector_[T](np.ravel(group)))
             self.DeclareContinuousState(BasicVector_[T](initial_state), 2, 2, np.size(initial_state) - 4)
@@ -77,7 +81,8 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             # telling the caches, but it always tells them the time.
             fresh_state = {self.xc_ticket(), self.time_ticket()}
             self.DeclareVectorOutputPort("state", 4, self._calc_state, fresh_state)
-            coupled_ports = {self.input_port_ticket(port.get_index()) for port in [self._phase, *self._springs]}
+            held = [self._phase, *self._springs, *([self._load] if self._load else [])]
+            coupled_ports = {self.input_port_ticket(port.get_index()) for port in held}
             self.DeclareVectorOutputPort(
                 "spring_force",
                 2,
@@ -89,7 +94,8 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
                 self.DeclareVectorOutputPort("acceleration", 2, self._calc_acceleration, fresh_state | all_read)
 
         def _construct_copy(self, other: Any, converter: Any = None) -> None:
-            Impl._construct(self, *other.arguments, acceleration=other.acceleration, converter=converter)
+            options = {"acceleration": other.acceleration, "load": other.load}
+            Impl._construct(self, *other.arguments, **options, converter=converter)
 
         def _calc_state(self, context: Any, output: Any) -> None:
             output.SetFromVector(context.get_continuous_state_vector().CopyToVector()[:4])
@@ -112,7 +118,10 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
                 nx, ny, nvx, nvy = port.Eval(context).tolist()
                 gx, gy = law(x - nx, y - ny, vx - nvx, vy - nvy, *numbers)
                 fx, fy = fx - gx, fy - gy  # -= would change an Expression in place
-            return phase * fx, phase * fy
+            if self._load is None:
+                return phase * fx, phase * fy
+            lx, ly = self._load.Eval(context).tolist()
+            return phase * fx + lx, phase * fy + ly
 
         def _rates(self, context: Any, state: list[Scalar]) -> tuple[Scalar, ...]:
             """Of velocity and inner states."""

@@ -53,7 +53,13 @@ def dragged_mass(
 
 
 def RobotPlant(  # noqa: N802 - makes a block, as its class would
-    neighbours: Sequence[int], law: type[SpringLaw], mass: ArrayLike, springs: ArrayLike, initial_state: ArrayLike
+    neighbours: Sequence[int],
+    law: type[SpringLaw],
+    mass: ArrayLike,
+    springs: ArrayLike,
+    initial_state: ArrayLike,
+    *,
+    load: bool = False,
 ) -> Any:
     """The plant of a free mass, whose acceleration is the forces on it by its mass.
 
@@ -63,8 +69,9 @@ def RobotPlant(  # noqa: N802 - makes a block, as its class would
         mass: m_i (kg), shape (1,).
         springs: numbers of the law and displacement of each spring, shape (neighbours, numbers + 2).
         initial_state: default state [q; v], shape (4,).
+        load: whether the object is a body of its own, which exerts a load.
     """
-    return PlanarRobot(free_mass, neighbours, law, [mass], springs, initial_state, acceleration=False)
+    return PlanarRobot(free_mass, neighbours, law, [mass], springs, initial_state, acceleration=False, load=load)
 
 
 @part("robot", kind="point_mass")
@@ -91,4 +98,5 @@ class PointMass(Robot):
             return super().block(formation, owner, numbers)
         mass, springs = numbers
         start = self.initial_state(formation, owner)
-        return RobotPlant(held_robots(formation, owner), formation.law, mass, springs, start)
+        neighbours, load = held_robots(formation, owner), formation.has_body
+        return RobotPlant(neighbours, formation.law, mass, springs, start, load=load)

@@ -46,8 +46,8 @@ class Robot(Part):
     def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:
         """The plant."""
         *own, springs = numbers
-        start = self.initial_state(formation, owner)
-        return PlanarRobot(self.dynamics, held_robots(formation, owner), formation.law, own, springs, start)
+        start, neighbours = self.initial_state(formation, owner), held_robots(formation, owner)
+        return PlanarRobot(self.dynamics, neighbours, formation.law, own, springs, start, load=formation.has_body)
 
     def initial_state(self, formation: Formation, owner: int) -> Array:
         """At its starting position, with its starting velocity."""

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from drake_formation.config.errors import Fault, Path, shortened, shown
+from drake_formation.formation.formation import SPRINGS
 from drake_formation.formation.graphs import Edge, edges
 from drake_formation.parts.registry import kinds
 from drake_formation.scenario import derive
@@ -17,7 +18,12 @@ def check(scenario: Scenario) -> Iterator[Fault]:
 
 
 def _springs(scenario: Scenario) -> Iterator[Fault]:
-    springs = scenario.springs
+    springs, kind = scenario.springs, scenario.object.kind
+    if kind != SPRINGS:
+        if "springs" in scenario.model_fields_set:
+            message = f"the carried object is {kind!r} and has no springs"
+            yield Fault(("springs",), message, allowed="nothing here, or object.kind springs")
+        return
     faults = list(_edges(("springs", "graph"), springs.graph, derive.robot_count(scenario.formation)))
     yield from faults
     fields = kinds("spring")[springs.law].Config.model_fields

@@ -20,7 +20,7 @@ def test_python_example_runs(capsys):
 def test_every_part_has_its_line_in_the_table():
     text = README.read_text(encoding="utf-8")
     table = text.split("## Parts")[1].split("## ")[0]
-    for role, its in ROLES.items():
+    for role in ROLES:
         for kind, part in kinds(role).items():
             if part.distribution == "drake-formation":
                 assert f"`{kind}`" in table, (role, kind)

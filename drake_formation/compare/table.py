@@ -21,6 +21,9 @@ COLUMNS = {
 }
 """Metrics that are compared: what tables call each, and its unit."""
 
+STRAIN, BODY_STRAIN = "max_spring_strain", "max_object_strain"
+"""An object that is a body of its own has the other strain."""
+
 MORE_IS_BETTER = ("min_clearance_m",)
 DIGITS = 3
 ROUNDING = 1e-9
@@ -133,6 +136,8 @@ def _row(case: str, law: str, outcomes: Sequence[Outcome]) -> Row:
 def _number(outcome: Outcome, name: str) -> float:
     """A metric as one number: of robots the worst."""
     value = outcome.metrics.get(name)
+    if value is None and name == STRAIN:
+        value = outcome.metrics.get(BODY_STRAIN)
     if value is None:
         return math.nan
     return max(value) if isinstance(value, list) else value

@@ -76,6 +76,9 @@ class Metrics(Mapping[str, Value]):
         peak_force_n: largest control force of any robot, springs excluded (N).
         min_clearance_m: least distance between a robot and an obstacle (m); None without obstacles.
         max_spring_strain: largest |d/r − 1| of any spring; None without springs.
+        max_object_strain: largest strain of an object that is a body of its own; None where it is springs.
+        rms_force_n: root mean square of the control forces over robots and time (N).
+        energy_j: ∫ Σ |u · v| dt of the control forces, driving and braking (J).
         settling_time_s: time from the hand-off until every robot stays near its slot at the goal (s).
     """
 

@@ -126,7 +126,8 @@ def test_a_law_that_fails_is_told_of_and_wins_nothing(small):
 def test_a_run_that_diverges_is_an_outcome(written):
     euler = "simulator.use_error_control: false, simulator.integration_scheme: explicit_euler"
     text = FILE.replace(
-        "set: {consensus: {kind: none}}", f"set: {{consensus.delta: 1.0e+6, avoidance.obstacles: [], transport.duration: 60.0, {euler}}}"
+        "set: {consensus: {kind: none}}",
+        f"set: {{consensus.delta: 1.0e+6, avoidance.obstacles: [], transport.duration: 60.0, {euler}}}",
     )
     outcome = run_one(load_comparison(written(text)).runs[2])
     assert "no longer finite" in outcome.failure or "stopped" in outcome.failure

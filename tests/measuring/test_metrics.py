@@ -6,6 +6,7 @@ import json
 import numpy as np
 import pytest
 import xarray as xr
+from carrying import UNLIKE, carried
 
 from drake_formation import load_scenario, simulate
 from drake_formation.measuring import Metrics, measure, metric, metrics, register, registry
@@ -228,3 +229,26 @@ def test_what_is_no_metric_or_has_a_name_that_is_taken_is_refused():
         register(metric("peak_force_n", label="mine", unit="N")(lambda transport: 0.0))
     with pytest.raises(AttributeError, match="there is no metric 'speed'"):
         Metrics(peak_force_n=1.0).speed  # noqa: B018
+
+
+@pytest.mark.parametrize("case", ["rubber", "steel and consensus", "a trajectory"])
+def test_effort_is_that_of_a_far_finer_run(case):
+    """Integrals over the integrator's steps, beside sums over samples 0.2 ms apart at the most."""
+    name, overrides = CASES[case]
+    fine = {"simulator.accuracy": 1e-10, "simulator.max_step_size": 2e-4}
+    result = simulate(load_scenario(name, overrides=overrides | fine), engine="compiled")
+    carried = result.isel(time=result["phase"].values == 1)
+    times, force, velocity = (carried[name].values for name in ("time", "control_force", "velocity"))
+    mean_square = np.trapezoid((force**2).sum(axis=-1).mean(axis=-1), times) / (times[-1] - times[0])
+    work = np.trapezoid(abs((force * velocity).sum(axis=-1)).sum(axis=-1), times)
+    found = metrics(simulate(load_scenario(name, overrides=overrides), engine="compiled"))
+    assert found.rms_force_n == pytest.approx(np.sqrt(mean_square), rel=2e-3)
+    assert found.energy_j == pytest.approx(work, rel=2e-3)
+
+
+def test_an_object_that_is_a_body_of_its_own_has_a_strain():
+    result = simulate(carried("{kind: rigid}", **UNLIKE))
+    strain = result["object_strain"].values[result["phase"].values == 1]
+    assert metrics(result).max_object_strain == strain.max() > 0
+    assert metrics(result).max_spring_strain is None
+    assert metrics(simulate(load_scenario("line", overrides=QUICK_RUN))).max_object_strain is None

@@ -38,6 +38,8 @@ def _description(scenario: Scenario) -> Table:
         table.add_row(f"{name} rigidity", f"rank {rank} of {rigid_rank(formation.robots)}")
     table.add_row("channels", str(len(formation.channels.pairs)))
     for name, role in ROLES.items():
+        if name == "spring" and formation.has_body:
+            continue
         written = section(scenario, name)
         classes: list[Any] = sorted({type(part) for part in formation.parts[name]}, key=lambda cls: str(cls.kind))
         fields = {key: its for cls in classes for key, its in cls.Config.model_fields.items()}

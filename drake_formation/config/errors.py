@@ -93,6 +93,8 @@ SYNONYMS = {
     **dict.fromkeys(("pointmass", "mass", "double_integrator"), "point_mass"),
     **dict.fromkeys(("omni", "holonomic", "mecanum", "omni_wheels", "swedish"), "omnidirectional"),
     **dict.fromkeys(("differential_drive", "diff_drive", "differential", "nonholonomic", "wheeled"), "unicycle"),
+    **dict.fromkeys(("rigid_body", "solid", "body"), "rigid"),
+    **dict.fromkeys(("plate", "deformable", "elastic", "soft", "mass_spring"), "lattice"),
     **dict.fromkeys(("wire", "perfect", "none"), "ideal"),
     **dict.fromkeys(("square", "rectangle", "triangle", "octagon", "hexagon", "circle_shape"), "polygon"),
 }

@@ -1,4 +1,4 @@
-"""The boxes of the diagram, one file each: robots, spring laws, controllers, references and channels.
+"""The boxes of the diagram, one file each: robots, objects, laws of springs, controllers, references, channels.
 
 A part is a class with its configuration, its law, its block and its numbers, named by its role and kind::
 

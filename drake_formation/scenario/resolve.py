@@ -67,7 +67,7 @@ def check(scenario: Scenario) -> list[Fault]:
     owners = _owners(scenario, sound=not links)
     parts, handing = _parts(scenario, owners)
     formation = _formation(scenario, parts, owners, sound=not places and not links)
-    skipped = {"reference", *(["coordination"] if links else [])}
+    skipped = {"reference", *(["coordination"] if links else []), *(["object"] if places or links else [])}
     faults = list(dict.fromkeys([
         *places,
         *(_part_faults(scenario, formation, ("reference",)) if not places else ()),  # it begins and ends at places

@@ -2,6 +2,7 @@
 
 import math
 from bisect import bisect_right
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -38,6 +39,15 @@ def at_least(x: Scalar, bound: Scalar) -> Scalar:
     if isinstance(x, np.ndarray):
         return np.maximum(x, bound)
     return x if x > bound else 0.0 * x + bound
+
+
+def largest(values: Sequence[Scalar]) -> Scalar:
+    """The largest of some scalars, at least one; taken in pairs, so that an expression of many is not deep."""
+    left = list(values)
+    while len(left) > 1:
+        odd = left[2 * (len(left) // 2) :]
+        left = [at_least(a, b) for a, b in zip(left[::2], left[1::2], strict=False)] + odd
+    return left[0]
 
 
 def positive_part(x: Scalar) -> Scalar:

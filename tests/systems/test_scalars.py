@@ -1,10 +1,13 @@
+import math
+
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from pydrake.autodiffutils import AutoDiffXd
 from pydrake.symbolic import Expression, Variable
 
-from drake_formation.systems.scalars import at_most, positive_part
+from drake_formation.systems.scalars import at_most, atan2, largest, positive_part
 
 numbers = st.floats(-1e6, 1e6)
 
@@ -36,3 +39,21 @@ def test_at_most_is_the_same_for_every_scalar(x, bound):
 @given(numbers)
 def test_at_most_includes_the_bound(x):
     assert at_most(x, x) == 1.0
+
+
+@given(st.lists(numbers, min_size=1, max_size=9))
+def test_largest_is_the_same_for_every_scalar(values):
+    variables = [Variable(f"x{k}") for k in range(len(values))]
+    found = largest([Expression(variable) for variable in variables])
+    assert largest(values) == max(values)
+    assert largest([AutoDiffXd(x, [1.0]) for x in values]).value() == max(values)
+    assert found.Evaluate(dict(zip(variables, values, strict=True))) == max(values)
+
+
+@given(numbers, numbers)
+def test_atan2_is_the_same_for_every_scalar(y, x):
+    a, b = Variable("a"), Variable("b")
+    expected = pytest.approx(math.atan2(y, x), rel=1e-15)
+    assert atan2(y, x) == expected
+    assert atan2(AutoDiffXd(y, [1.0]), AutoDiffXd(x, [0.0])).value() == expected
+    assert atan2(Expression(a), Expression(b)).Evaluate({a: y, b: x}) == expected

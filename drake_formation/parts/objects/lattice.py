@@ -17,8 +17,8 @@ from drake_formation.parts.registry import part
 
 Indices = NDArray[np.int64]
 
-MOST = 100
-"""Nodes in a row or column; a plate of more would take all day."""
+MOST = 30
+"""Nodes in a row or column; the code of a plate of more would be too long to compile."""
 
 FLAT = 1e-9
 """A side of the plate shorter than this share of the other is none."""
@@ -29,7 +29,7 @@ class Lattice(CarriedObject):
     """A deformable plate of point masses and springs, on a grid over the bounding box of the slots."""
 
     class Config(GripNumbers):
-        """The plate, and its grips."""
+        """The plate, and its grips; the more nodes, the longer it compiles: 8 by 8 take some ten seconds, once."""
 
         mass: Positive = Field(default=20.0, description="mass m (kg), shared by all nodes alike; chosen: 20")
         rows: int = Field(

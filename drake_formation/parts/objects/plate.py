@@ -5,14 +5,13 @@ Rows go along x, and arrays of the grid have the shape (rows, columns, 2): x and
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import reduce
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from drake_formation.parts.objects.carried import Mechanics
 from drake_formation.parts.objects.grips import Motion, Pair
-from drake_formation.systems.scalars import Scalar, at_least, atan2
+from drake_formation.systems.scalars import Scalar, atan2, largest
 
 quiet = np.errstate(invalid="ignore", divide="ignore")
 """NumPy warns of arrays of Expression for nothing, and what is not finite the engines tell of."""
@@ -150,7 +149,7 @@ class PlateMechanics(Mechanics):
     def strain(self, state: Any, stretches: Sequence[Pair], numbers: Sequence[Any]) -> Scalar:  # noqa: ARG002
         """The largest share by which any spring of the plate is longer or shorter than at rest."""
         positions, _ = self._grids(state)
-        return reduce(at_least, elongations(positions, numbers[0].tolist()))
+        return largest(elongations(positions, numbers[0].tolist()))
 
     def _grids(self, state: Any) -> tuple[Any, Any]:
         positions, velocities = state.reshape(2, self.rows, self.columns, 2)

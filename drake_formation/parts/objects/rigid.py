@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,7 @@ from drake_formation.parts.objects.carried import CarriedObject, Mechanics
 from drake_formation.parts.objects.grips import GripNumbers, Motion, Pair
 from drake_formation.parts.part import Array, Numbers
 from drake_formation.parts.registry import part
-from drake_formation.systems.scalars import Scalar, at_least, cos, sin
+from drake_formation.systems.scalars import Scalar, cos, largest, sin
 
 GRAVITY = 9.81
 """g (m/s²)."""
@@ -56,8 +55,7 @@ class RigidMechanics(Mechanics):
 
     def strain(self, state: Any, stretches: Sequence[Pair], numbers: Sequence[Any]) -> Any:  # noqa: ARG002
         """The largest stretch of a grip as a share of s, the distance of the farthest grip from the centre."""
-        squares = [dx * dx + dy * dy for dx, dy in stretches]
-        return reduce(at_least, squares) ** 0.5 / numbers[0][4]
+        return largest([dx * dx + dy * dy for dx, dy in stretches]) ** 0.5 / numbers[0][4]
 
 
 def _turned(x: Scalar, y: Scalar, cosine: Scalar, sine: Scalar) -> Pair:

@@ -137,6 +137,18 @@ def test_a_diagram_takes_another_scenarios_numbers(kind):
     )
 
 
+def test_a_robot_that_holds_another_cell_of_the_plate_needs_another_diagram():
+    def plate(x):
+        slots = f"{{shape: slots, slots: [[-1, -1], [1, -1], [{x}, 1], [{-x}, 1]]}}"
+        return carried("{kind: lattice, rows: 3, columns: 3}", formation=slots)
+
+    diagram = build_diagram(plate(0.5))
+    context = diagram.CreateDefaultContext()
+    set_parameters(diagram, context, plate(0.6))
+    with pytest.raises(ValueError, match="another structure"):
+        set_parameters(diagram, context, plate(-0.5))
+
+
 @each_kind
 def test_a_scenario_is_written_and_read_again(kind):
     scenario = carried(kind)
@@ -151,6 +163,9 @@ def test_a_scenario_is_written_and_read_again(kind):
 def test_springs_beside_another_object_are_refused_at_their_line(kind):
     with pytest.raises(ScenarioError, match=r"carried.yaml:8.*springs: the carried object is '.*' and has no springs"):
         carried(kind, tracking="{kind: lqr}", springs="{stiffness: 5.0}")
+    with pytest.raises(ScenarioError) as caught:
+        carried(kind, springs="{stiffness: 5.0}")
+    assert len(caught.value.faults) == 1
     same = carried("{kind: springs}", springs="{stiffness: 5.0}")
     assert len(resolve(same).springs.pairs) == 6
 

@@ -7,6 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drake_formation import ScenarioError
+from drake_formation.lowering.expressions import Graph
+from drake_formation.lowering.trace import SymbolTable, TracedBlock
 from drake_formation.parts.objects.lattice import Lattice, cells
 from drake_formation.parts.objects.plate import PlateMechanics, elongations, spring_forces
 from drake_formation.scenario import resolve
@@ -77,6 +79,15 @@ def test_springs_and_grips_leave_momentum_and_spin_to_the_robots_alone(rng):
     places, points = state[:24].reshape(-1, 2), np.array(mechanics.points(state, range(4), its))[:, :2]
     np.testing.assert_allclose(nodes.sum(axis=0), np.sum(forces, axis=0), atol=1e-10)
     np.testing.assert_allclose(_moment(places, nodes), _moment(points, np.array(forces)), atol=1e-9)
+
+
+def test_a_fine_plate_is_no_deep_expression():
+    formation = resolve(carried("{kind: lattice, rows: 15, columns: 15}"))
+    (part,) = formation.parts["object"]
+    block = part.block(formation, 0, part.numbers(formation, 0))
+    traced = TracedBlock("object", block, SymbolTable())
+    (strain,) = traced.trace(block.GetOutputPort("strain").get_index())
+    assert Graph(traced.symbols.leaf_of).read(strain) > 15 * 15
 
 
 def _moment(places, forces):

@@ -15,9 +15,10 @@ from drake_formation.parts.tracking.lqr import lqr_force
 class Plant(LeafSystem):
     """A mass with spring ports."""
 
-    def __init__(self, neighbours, law, mass, springs, initial_state):
+    def __init__(self, neighbours, law, mass, springs, initial_state, *, load):
         super().__init__()
         assert law is Hookean
+        assert not load
         self.neighbours, self.mass, self.springs = neighbours, mass[0], springs
         self.DeclareVectorInputPort("force", 2)
         self.DeclareVectorInputPort("phase", 1)

@@ -20,7 +20,12 @@ def test_slots_are_about_the_centre_and_starts_about_where_it_gathers(name):
 @pytest.mark.parametrize("name", shipped_scenarios())
 def test_there_is_a_part_for_every_owner(name):
     formation = resolve(load_scenario(name))
-    counts = {"spring": len(formation.springs.pairs), "channel": len(formation.channels.pairs), "reference": 1}
+    counts = {
+        "spring": len(formation.springs.pairs),
+        "channel": len(formation.channels.pairs),
+        "reference": 1,
+        "object": 1,
+    }
     for role, parts in formation.parts.items():
         assert len(parts) == counts.get(role, formation.robots)
         assert all(part.role == role for part in parts)

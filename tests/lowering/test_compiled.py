@@ -30,7 +30,7 @@ from drake_formation.systems.templates import block_template
 
 EXACT = {"rtol": 1e-12, "atol": 1e-12}
 
-few = settings(max_examples=8, deadline=None, suppress_health_check=list(HealthCheck))
+few = settings(max_examples=5, deadline=None, suppress_health_check=list(HealthCheck))
 
 
 def same_derivatives(compiled, diagram, context):

@@ -33,7 +33,7 @@ def leaping(engine):
     """Robot 1 passes over an obstacle whose force reaches a millimetre far, in one step."""
     obstacle = {"position": [1.5, 3.0], "radius": 1e-3}
     overrides = LEAP | {"avoidance.obstacles": [{"position": [5.0, 9.0]}, obstacle], "avoidance.range": 1e-3}
-    return simulate(load_scenario("line", overrides=overrides | {"transport.duration": 10.0}), engine=engine)
+    return simulate(load_scenario("line", overrides=overrides | {"transport.duration": 5.0}), engine=engine)
 
 
 @pytest.mark.parametrize("engine", ["blocks", "compiled"])

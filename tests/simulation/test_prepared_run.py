@@ -20,7 +20,7 @@ def engine(request):
 
 
 @given(pair=pairs_of_scenarios())
-@settings(max_examples=5, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=3, deadline=None, suppress_health_check=list(HealthCheck))
 def test_a_run_does_not_depend_on_what_ran_before(pair):
     first, second = pair
     prepared = PreparedRun(first, engine="compiled")

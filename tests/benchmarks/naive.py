@@ -8,6 +8,7 @@ from pydrake.systems.framework import BasicVector, LeafSystem
 
 from drake_formation import build_diagram
 from drake_formation.parts.avoidance.khatib import avoidance_force
+from drake_formation.parts.coordination.consensus import consensus_force
 from drake_formation.parts.springs.hookean import Hookean
 from drake_formation.parts.tracking.lqr import lqr_force
 
@@ -78,8 +79,9 @@ class Tracking(LeafSystem):
 class Consensus(LeafSystem):
     """u_g."""
 
-    def __init__(self, neighbours, gains, displacements):
+    def __init__(self, neighbours, gains, displacements, *, law):
         super().__init__()
+        assert law is consensus_force
         self.neighbours, self.gains, self.displacements = neighbours, gains, displacements
         self.DeclareVectorInputPort("state", 4)
         for j in neighbours:

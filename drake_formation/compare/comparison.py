@@ -70,7 +70,7 @@ def load_comparison(source: str | Path) -> Comparison:
     if faults := list(value_faults(document.data)):
         raise document.attributed(faults)
     model = parsed(document, ComparisonFile, SECTIONS)
-    if faults := [*_doubles(model), *_size_faults(model)]:
+    if faults := [*_doubles(model), *_overlaps(model), *_size_faults(model)]:
         raise document.attributed(faults)
     base = base_document(document, model.scenario, model.set, path.parent)
     runs = tuple(_runs(document, model, base))
@@ -90,8 +90,9 @@ def _runs(document: Document, model: ComparisonFile, base: Document) -> Iterator
         for k, law in enumerate(model.laws):
             for number, seed in enumerate(model.seeds or (None,)):
                 try:
-                    changed = with_values(base, case.set, _origins(document, "cases", c, case))
-                    changed = with_values(changed, law.set, _origins(document, "laws", k, law))
+                    # A case may change a field of a section that a law replaces: the obstacles, say.
+                    changed = with_values(base, law.set, _origins(document, "laws", k, law))
+                    changed = with_values(changed, case.set, _origins(document, "cases", c, case))
                     if seed is not None:
                         changed = with_values(changed, {SEED: seed}, {SEED: document.origin(("seeds", number))})
                     yield Run(law.name, case.name, seed, validate(changed))
@@ -113,6 +114,15 @@ def _doubles(model: ComparisonFile) -> Iterator[Fault]:
             if variant.name in seen:
                 yield Fault((key, index, "name"), "another one has this name", variant.name)
             seen.add(variant.name)
+
+
+def _overlaps(model: ComparisonFile) -> Iterator[Fault]:
+    """A case that replaces what a law sets, which would then be the same law in another name."""
+    for c, case in enumerate(model.cases):
+        for path in case.set:
+            laws = [law.name for law in model.laws if any(f"{its}.".startswith(f"{path}.") for its in law.set)]
+            if laws:
+                yield Fault(("cases", c, "set", path), f"replaces what law {laws[0]!r} sets")
 
 
 def _size_faults(model: ComparisonFile) -> Iterator[Fault]:

@@ -30,7 +30,7 @@ class ComparisonFile(Section):
     )
     cases: Annotated[tuple[Variant, ...], Field(strict=False, min_length=1)] = Field(
         default=(Variant(name="all"),),
-        description="where they are compared, such as rubber and steel",
+        description="where they are compared, such as rubber and steel; set after the law",
     )
     seeds: Annotated[tuple[Annotated[int, Field(ge=0)], ...], Field(strict=False)] = Field(
         default=(), description="for robots.start.random.seed, one run each; the scenario's own start if not given"

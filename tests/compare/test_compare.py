@@ -14,6 +14,7 @@ from drake_formation import ScenarioError, load_scenario, metrics, simulate
 from drake_formation.compare import load_comparison, rows, run_comparison, shipped_comparisons
 from drake_formation.compare.run import run_one, traffic
 from drake_formation.compare.table import COLUMNS, as_csv, latex, markdown
+from drake_formation.scenario import resolve
 
 FILE = """\
 name: small
@@ -73,6 +74,16 @@ def test_its_figures_are_those_of_each_law_alone(small):
     (row,) = (row for row in table if (row.case, row.law) == ("steel", "consensus"))
     assert row.cells["peak_force_n"].mean == pytest.approx(np.mean(own))
     assert row.cells["peak_force_n"].spread == pytest.approx(np.std(own, ddof=1))
+
+
+def test_a_case_changes_what_a_law_has_put_in_place(written):
+    law = "avoidance: {kind: rotational}"
+    text = FILE.replace("consensus: {kind: none}", law).replace(
+        "springs.stiffness: 1.0e+3", "avoidance.obstacles: [{position: [9.0, 9.0]}]"
+    )
+    run = load_comparison(written(text)).runs[-1]
+    assert resolve(run.scenario).parts["avoidance"][0].kind == "rotational"
+    assert resolve(run.scenario).obstacles[:, :2].tolist() == [[9.0, 9.0]]
 
 
 def test_channels_count_where_they_are_read(small):
@@ -142,6 +153,7 @@ def test_a_run_that_diverges_is_an_outcome(written):
         ("scenario: line", "scenario: lien", r"small\.yaml:2: scenario: no such file or shipped scenario .*'line'"),
         ("name: steel", "name: rubber", r"small\.yaml:14: cases\.1\.name: another one has this name"),
         ("laws:", "rules:", r"small\.yaml:\d+: rules: unknown key; allowed: name, "),
+        ("springs.stiffness: 1.0e+3", "consensus: {kind: none}", r"\.yaml:15: cases\.1\.set\.consensus: replaces what law 'cons"),
         ("seeds: [3, 5]", "seeds: [-1]", r"small\.yaml:16: seeds\.0: "),
     ],
 )  # fmt: skip
@@ -153,8 +165,8 @@ def test_what_is_wrong_is_said_with_file_and_line(written, old, new, said):
 @pytest.mark.parametrize("name", shipped_comparisons())
 def test_the_shipped_ones_are_sound(name):
     comparison = load_comparison(name)
-    assert len(comparison.runs) == len(comparison.laws) * len(comparison.cases) * 3
-    assert load_scenario("quadrilateral").description
+    assert len(comparison.runs) % (len(comparison.laws) * len(comparison.cases)) == 0
+    assert comparison.description
 
 
 def test_the_command_leaves_tables_figures_and_scenarios(cli, written, tmp_path):

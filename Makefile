@@ -54,6 +54,8 @@ diagrams: $(VENV)/installed
 	cp out/paper/figures/fig11.png diagrams/paper-fig11.png
 	$(BIN)/drake-formation sweep gains --out out/gains
 	cp out/gains/figures/consensus_error_m.png diagrams/gains-consensus-error.png
+	$(BIN)/drake-formation compare avoidance --out out/avoidance
+	cp out/avoidance/figures/paths.png diagrams/avoidance-paths.png
 	$(BIN)/drake-formation analyze line --set consensus.delta=1e4 --out out/certificate
 	cp out/certificate/figures/delay_margin.png diagrams/line-delay-margin.png
 

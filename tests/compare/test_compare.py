@@ -153,7 +153,7 @@ def test_a_run_that_diverges_is_an_outcome(written):
         ("scenario: line", "scenario: lien", r"small\.yaml:2: scenario: no such file or shipped scenario .*'line'"),
         ("name: steel", "name: rubber", r"small\.yaml:14: cases\.1\.name: another one has this name"),
         ("laws:", "rules:", r"small\.yaml:\d+: rules: unknown key; allowed: name, "),
-        ("springs.stiffness: 1.0e+3", "consensus: {kind: none}", r"\.yaml:15: cases\.1\.set\.consensus: replaces what law 'cons"),
+        ("springs.stiffness: 1.0e+3", "consensus: {kind: none}", r":15: cases.1.set.consensus: replaces what law"),
         ("seeds: [3, 5]", "seeds: [-1]", r"small\.yaml:16: seeds\.0: "),
     ],
 )  # fmt: skip

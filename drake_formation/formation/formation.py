@@ -99,8 +99,23 @@ class Formation:
 
     @cached_property
     def rest_lengths(self) -> Array:
-        """r_ij = ‖h_i − h_j‖ of every edge of the object (m), shape (E,)."""
-        return self.springs.lengths(self.slots)
+        """r_ij of every edge of the object (m), shape (E,): ‖h_i − h_j‖ unless its spring has another one."""
+        distances = self.springs.lengths(self.slots)
+        parts = self.parts["spring"]
+        return np.array([part.rest_length(d) for part, d in zip(parts, distances, strict=True)], dtype=float)
+
+    @cached_property
+    def elongations(self) -> Array:
+        """r_ij/‖h_i − h_j‖ of every edge, 1 where its spring is at rest between the slots; shape (E,)."""
+        distances = self.springs.lengths(self.slots)
+        return np.where(
+            self.rest_lengths == distances, 1.0, self.rest_lengths / np.where(distances > 0, distances, 1.0)
+        )
+
+    @property
+    def at_rest_in_slots(self) -> bool:
+        """Whether the object's springs are all at rest where the robots are in their slots."""
+        return bool((self.elongations == 1.0).all())
 
     def displacements(self, robot: int, others: tuple[int, ...]) -> Array:
         """Desired displacement h_i − h_j of a robot from some others (m), shape (others, 2)."""

@@ -5,10 +5,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 from pydrake.systems.framework import System
 
 from drake_formation.config.errors import Fault
-from drake_formation.config.values import Section
+from drake_formation.config.values import Length, Section
 from drake_formation.formation.formation import Formation
 
 Array = NDArray[np.float64]
@@ -109,10 +110,24 @@ class Part:
         return None
 
 
+class RestNumbers(Section):
+    """Where a spring is at rest, if not between its robots in their slots; at most one of the two may be given."""
+
+    rest_length: Length | None = Field(
+        default=None, description="r_ij (m), one for all or one an edge; published: the distance of the slots"
+    )
+    pre_tension: float = Field(
+        default=0.0,
+        description="T_ij (N), with which the spring draws robots in their slots together, or below 0 pushes them "
+        "apart; one for all or one an edge; published: none",
+    )
+
+
 class SpringLaw(Part):
     """The law by which the carried object couples two robots; a part without a block, for plants carry it out.
 
-    The fields of its configuration are numbers of an edge, and the law's arguments in the order of their declaration.
+    The fields of its configuration are numbers of an edge, and the law's arguments in the order of their declaration;
+    those of :class:`RestNumbers`, if it has them, say where the spring is at rest instead.
     """
 
     role = "spring"
@@ -133,7 +148,15 @@ class SpringLaw(Part):
         """
         raise NotImplementedError
 
+    @classmethod
+    def arguments(cls) -> list[str]:
+        """The fields that are the law's arguments, in their order."""
+        return [name for name in cls.Config.model_fields if name not in RestNumbers.model_fields]
+
     def numbers(self, formation: Formation, owner: int) -> Numbers:  # noqa: ARG002
-        """The configured numbers of the edge."""
-        fields = type(self.config).model_fields
-        return (np.array([getattr(self.config, name) for name in fields], dtype=float),)
+        """The numbers of the edge that are the law's arguments."""
+        return (np.array([getattr(self.config, name) for name in self.arguments()], dtype=float),)
+
+    def rest_length(self, distance: float) -> float:
+        """The length at which the spring is at rest (m), between slots at some distance (m): that, by default."""
+        return distance

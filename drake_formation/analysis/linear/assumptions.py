@@ -30,14 +30,16 @@ def require_linear_consensus(formation: Formation) -> None:
 
 
 def require_springs(formation: Formation) -> None:
-    """A carried object that is springs between robots.
+    """A carried object that is springs between robots, at rest where those are in their slots.
 
     Raises:
-        IllPosedError: it is a body of its own.
+        IllPosedError: it is a body of its own, or tensioned.
     """
     if formation.has_body:
         (part,) = formation.parts["object"]
         raise IllPosedError(f"the carried object is {part.kind!r}; what is certified are springs")
+    if not formation.at_rest_in_slots:
+        raise IllPosedError("springs have tension in the slots; what is certified is a formation at rest there")
 
 
 def require_free_masses(formation: Formation) -> None:

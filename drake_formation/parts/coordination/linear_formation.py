@@ -49,7 +49,8 @@ def spring_slope(formation: Formation, edge: int, displacement: Array) -> Array:
     """
     (numbers,) = formation.parts["spring"][edge].numbers(formation, edge)
     relative = InitializeAutoDiff(np.concatenate([displacement, np.zeros(2)])).ravel()
-    force = formation.law.law(*relative, *numbers.tolist(), *displacement.tolist())
+    at_rest = displacement * formation.elongations[edge]
+    force = formation.law.law(*relative, *numbers.tolist(), *at_rest.tolist())
     slope: Array = ExtractGradient(np.array(force).reshape(2, 1))
     return slope
 

@@ -68,7 +68,7 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             self.acceleration, self.load = acceleration, load
             self.kind = dynamics, law, load  # all else that it computes with is a parameter
             self._dynamics, self._law = dynamics, law.law
-            self._groups, self._columns = range(len(numbers)), len(law.Config.model_fields) + 2
+            self._groups, self._columns = range(len(numbers)), len(law.arguments()) + 2
             self._zero = T(0.0)
             self._force = self.DeclareVectorInputPort("force", 2)
             self._phase = self.DeclareVectorInputPort("phase", 1)

@@ -60,8 +60,11 @@ def held_robots(formation: Formation, robot: int) -> list[int]:
 
 
 def spring_table(formation: Formation, robot: int) -> Array:
-    """Of each spring of a robot in port order, the numbers of the law and h_i − h_j, shape (neighbours, columns)."""
-    others = formation.springs.neighbours[robot]
-    rows = [formation.parts["spring"][edge].numbers(formation, edge)[0] for edge in formation.springs.incident(robot)]
-    numbers = np.array(rows, dtype=float).reshape(len(others), len(formation.law.Config.model_fields))
-    return np.column_stack([numbers, formation.displacements(robot, others)])
+    """Of each spring of a robot in port order, the numbers of the law and where it is at rest, (neighbours, columns).
+
+    That is h_i − h_j (m), as long as the spring is at rest.
+    """
+    others, edges = formation.springs.neighbours[robot], formation.springs.incident(robot)
+    rows = [formation.parts["spring"][edge].numbers(formation, edge)[0] for edge in edges]
+    numbers = np.array(rows, dtype=float).reshape(len(others), len(formation.law.arguments()))
+    return np.column_stack([numbers, formation.displacements(robot, others) * formation.elongations[edges, None]])

@@ -1,9 +1,13 @@
 """Springs along the lines between robots (paper, Eq. 2)."""
 
+from collections.abc import Iterator
+
 from pydantic import Field
 
+from drake_formation.config.errors import Fault, shown
 from drake_formation.config.values import NonNegative, Section
-from drake_formation.parts.part import SpringLaw
+from drake_formation.formation.formation import Formation
+from drake_formation.parts.part import RestNumbers, SpringLaw
 from drake_formation.parts.registry import part
 from drake_formation.systems.scalars import Scalar
 
@@ -36,7 +40,7 @@ def hookean_spring_force(
     return tension * dx, tension * dy
 
 
-class SpringNumbers(Section):
+class Stiffness(Section):
     """Stiffness and damping of one spring."""
 
     stiffness: NonNegative = Field(
@@ -45,9 +49,40 @@ class SpringNumbers(Section):
     damping: NonNegative = Field(default=0.0, description="c_ij (N s/m), one for all or one an edge; published: none")
 
 
-@part("spring", kind="hookean")
-class Hookean(SpringLaw):
-    """Springs that act along the lines between robots (paper, Eq. 2); they leave the formation free to turn."""
+class SpringNumbers(RestNumbers, Stiffness):
+    """Stiffness and damping of one spring, and where it is at rest."""
+
+
+class Spring(SpringLaw):
+    """A spring that may be at rest elsewhere than between its robots in their slots."""
 
     Config = SpringNumbers
+
+    def rest_length(self, distance: float) -> float:
+        """The length given, or where the tension given is what the spring has between the slots: r = d − T/k (m)."""
+        config = self.config
+        if config.rest_length is not None:
+            return float(config.rest_length)
+        return distance - config.pre_tension / config.stiffness if config.pre_tension else distance
+
+    def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:
+        """Whether there is one length at which it is at rest, and that is above 0."""
+        config = self.config
+        if not config.pre_tension:
+            return
+        distance = float(formation.springs.lengths(formation.slots)[owner])
+        value = shown(config.pre_tension)
+        if config.rest_length is not None:
+            yield Fault(("pre_tension",), "given together with rest_length", value, "one of the two")
+        elif not config.stiffness:
+            yield Fault(("pre_tension",), "a spring without stiffness has none", value, "0, or some stiffness")
+        elif distance and config.pre_tension >= config.stiffness * distance:
+            most = f"less than k_ij d_ij = {config.stiffness * distance:.4g} N"
+            yield Fault(("pre_tension",), "the spring would be at rest at no length", value, most)
+
+
+@part("spring", kind="hookean")
+class Hookean(Spring):
+    """Springs that act along the lines between robots (paper, Eq. 2); they leave the formation free to turn."""
+
     law = staticmethod(hookean_spring_force)

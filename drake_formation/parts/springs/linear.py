@@ -1,8 +1,7 @@
 """Springs on displacements, as the paper writes them in its linear model (Eqs. 4-7)."""
 
-from drake_formation.parts.part import SpringLaw
 from drake_formation.parts.registry import part
-from drake_formation.parts.springs.hookean import SpringNumbers
+from drake_formation.parts.springs.hookean import Spring
 from drake_formation.systems.scalars import Scalar
 
 
@@ -18,8 +17,7 @@ def linear_spring_force(
 
 
 @part("spring", kind="linear")
-class Linear(SpringLaw):
+class Linear(Spring):
     """Springs that resist rotation too (paper, Eqs. 4-7)."""
 
-    Config = SpringNumbers
     law = staticmethod(linear_spring_force)

@@ -26,6 +26,7 @@ def compare(
     from drake_formation.compare import load_comparison, rows, run_comparison
     from drake_formation.places import PICTURES, OutputError, reserved
     from drake_formation.sweep import SweepStoppedError
+    from drake_formation.sweep.processes import WorkerDiedError
 
     comparison = load_comparison(source)
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed} / {task.total} runs"))
@@ -40,7 +41,7 @@ def compare(
             written = write_comparison(place, comparison, outcomes, table)
     except OutputError as error:
         stop(str(error), WRONG_INPUT)
-    except SweepStoppedError as error:
+    except (SweepStoppedError, WorkerDiedError) as error:
         stop(str(error), FAILED_RUN)
     for part in summary(comparison, table):
         say(part)

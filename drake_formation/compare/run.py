@@ -1,6 +1,5 @@
 """Running a comparison, one process a processor."""
 
-import os
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
@@ -57,10 +56,11 @@ def run_comparison(
     Returns:
         The outcomes in the order of the comparison's runs.
     """
+    from drake_formation.sweep.executors import _processors
     from drake_formation.sweep.processes import Processes
 
     total = len(comparison.runs)
-    workers = min(workers or len(os.sched_getaffinity(0)), total)
+    workers = min(workers or _processors(), total)
     with Processes(workers) as processes:
         futures: list[Future[Outcome]] = [processes.call(run_one, run) for run in comparison.runs]
         pending: set[Future[Outcome]] = set(futures)
@@ -80,9 +80,12 @@ def run_one(run: Run) -> Outcome:
     failure, figures = "", dict[str, Value]()
     try:
         result = simulate(run.scenario)
-        figures = metrics(result).to_dict()
     except SimulationError as error:
         result, failure = error.partial, str(error)
+    try:
+        figures = {} if failure else metrics(result).to_dict()
+    except ValueError as error:  # a run too short to be measured
+        failure = str(error)
     channels, messages = traffic(run)
     chosen = _thinned(len(result["time"]))
     return Outcome(

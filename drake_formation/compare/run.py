@@ -56,11 +56,11 @@ def run_comparison(
     Returns:
         The outcomes in the order of the comparison's runs.
     """
-    from drake_formation.sweep.executors import _processors
+    from drake_formation.sweep.executors import processors
     from drake_formation.sweep.processes import Processes
 
     total = len(comparison.runs)
-    workers = min(workers or _processors(), total)
+    workers = min(workers or processors(), total)
     with Processes(workers) as processes:
         futures: list[Future[Outcome]] = [processes.call(run_one, run) for run in comparison.runs]
         pending: set[Future[Outcome]] = set(futures)

@@ -91,9 +91,9 @@ def _processes(workers: int | None) -> Executor:
 
     if workers is not None and not 1 <= workers <= MOST_WORKERS:
         raise SweepError(f"{workers} workers; give at least one and at most {MOST_WORKERS}")
-    return Processes(workers or _processors())
+    return Processes(workers or processors())
 
 
-def _processors() -> int:
+def processors() -> int:
     """How many this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -35,7 +35,7 @@ def predecessors(channels: Channels, leader: int) -> dict[int, int]:
     """
     speaking = nx.empty_graph(channels.robots, create_using=nx.DiGraph)
     speaking.add_edges_from((j, i) for i, j in channels.pairs.tolist())
-    return dict(nx.bfs_predecessors(speaking, leader))
+    return {follower: followed for followed, follower in nx.bfs_edges(speaking, leader)}
 
 
 @block_template("Follower_", __name__)

@@ -75,7 +75,7 @@ def test_a_scenario_needs_no_more_than_this():
             "",
             "",
             "springs:\n",
-            "f.yaml:10: springs: not allowed (got null); allowed: a mapping {law, graph, stiffness, damping}",
+            "f.yaml:10: springs: not allowed (got null); allowed: a mapping {law, graph, stiffness, damping, ",
         ),
         (
             "",

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.formation.formation import Formation
-from drake_formation.measuring.transport import Transport
 from drake_formation.parameters import block_parameters, robot_name
 from drake_formation.parts.avoidance.khatib import Khatib, avoidance_force
 from drake_formation.parts.channels.ideal import IdealChannel
@@ -53,16 +52,6 @@ def control_law(formation: Formation, times: Array, recorded: Array) -> Law:
         return np.stack(read, axis=-1).reshape(position.shape)
 
     return between
-
-
-def between_samples(transport: Transport) -> tuple[Array, Array]:
-    """Control forces (N) and velocities (m/s) half-way through every step, each of shape (samples − 1, N, 2)."""
-    robots = transport.robots
-    law = control_law(transport.formation, robots.times, transport["control_force"])
-    steps = np.arange(len(robots.times) - 1)
-    position, velocity, _ = robots.at(steps, np.full((len(steps), 1), 0.5))
-    middle = 0.5 * (robots.times[:-1] + robots.times[1:])
-    return law(middle, position[:, 0], velocity[:, 0]), velocity[:, 0]
 
 
 class ControlLaw:

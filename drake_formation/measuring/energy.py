@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from drake_formation.measuring.control_law import between_samples
 from drake_formation.measuring.metric import metric
 from drake_formation.measuring.transport import Transport
 
@@ -14,6 +13,5 @@ def energy(transport: Transport) -> float | None:
     if len(times) < 2:
         return None
     force, velocity = transport["control_force"], transport["velocity"]
-    middle = between_samples(transport)
-    powers = [abs((u * v).sum(axis=-1)).sum(axis=-1) for u, v in ((force, velocity), middle)]
+    powers = [abs((u * v).sum(axis=-1)).sum(axis=-1) for u, v in ((force, velocity), transport.half_way)]
     return float(np.diff(times) @ (powers[0][:-1] + 4 * powers[1] + powers[0][1:]) / 6)

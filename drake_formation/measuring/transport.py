@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.formation.formation import Formation
+from drake_formation.measuring.control_law import Law, control_law
 from drake_formation.scenario import resolve
 from drake_formation.simulation.motion import Motion
 from drake_formation.simulation.series import Series
@@ -54,6 +55,19 @@ class Transport:
     def deviation(self) -> Motion:
         """The motion relative to the obstacle-free response."""
         return self._motion("deviation", "deviation_velocity", "deviation_acceleration")
+
+    @cached_property
+    def law(self) -> Law:
+        """The control forces as a function of time and state."""
+        return control_law(self.formation, self.robots.times, self["control_force"])
+
+    @cached_property
+    def half_way(self) -> tuple[Array, Array]:
+        """Control forces (N) and velocities (m/s) half-way through every step, each of shape (samples − 1, N, 2)."""
+        times = self.robots.times
+        steps = np.arange(len(times) - 1)
+        position, velocity, _ = self.robots.at(steps, np.full((len(steps), 1), 0.5))
+        return self.law(0.5 * (times[:-1] + times[1:]), position[:, 0], velocity[:, 0]), velocity[:, 0]
 
     @cached_property
     def _samples(self) -> NDArray[np.bool_]:

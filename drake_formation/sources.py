@@ -6,8 +6,11 @@ from importlib.metadata import entry_points
 from importlib.util import find_spec
 from pathlib import Path
 
-GROUPS = ("drake_formation.parts", "drake_formation.metrics")
-"""Groups of entry points by which other packages bring parts and metrics."""
+OWN, SESSION = "drake-formation", "this session"
+"""Where parts and metrics come from, beside other packages: the distribution of this one, and a notebook."""
+
+PART_POINTS, METRIC_POINTS = "drake_formation.parts", "drake_formation.metrics"
+"""Groups of entry points by which other packages bring them: ``my_law = "my_package.my_law:MyLaw"``."""
 
 
 @functools.cache
@@ -22,7 +25,7 @@ def source_hash() -> str:
 @functools.cache
 def guest_hashes() -> dict[str, str]:
     """The same of every other package that brings parts or metrics, by the name of its module; empty if none does."""
-    points = (entry for group in GROUPS for entry in entry_points(group=group))
+    points = (entry for group in (PART_POINTS, METRIC_POINTS) for entry in entry_points(group=group))
     modules = {entry.module.partition(".")[0] for entry in points}
     return {name: _hash_of_module(name) for name in sorted(modules)}
 

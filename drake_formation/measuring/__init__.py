@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from drake_formation.measuring.metric import Metric, Metrics, Value, metric
+from drake_formation.sources import OWN
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -62,7 +63,7 @@ def register(metric: Metric) -> Metric:
 
 def _measured(metric: Metric, transport: "Transport") -> Value:
     """A metric's value. Another package's mistake costs its own figure, and not the run."""
-    if metric.distribution == "drake-formation":
+    if metric.distribution == OWN:
         return metric(transport)
     try:
         return metric(transport)

@@ -9,11 +9,7 @@ from dataclasses import replace
 from importlib.metadata import EntryPoint, entry_points
 
 from drake_formation.measuring.metric import Metric
-from drake_formation.sources import GROUPS
-
-_, GROUP = GROUPS
-"""Entry points of this group are metrics: ``mean_error = "my_package.mean_error:mean_error"``."""
-SESSION = "this session"
+from drake_formation.sources import METRIC_POINTS, SESSION
 
 _FINDING = threading.RLock()
 _metrics: dict[str, Metric] = {}
@@ -54,7 +50,7 @@ def _find_all() -> None:
         for value in vars(importlib.import_module(module.name)).values():
             if isinstance(value, Metric):
                 _metrics[value.name] = value
-    for entry in entry_points(group=GROUP):
+    for entry in entry_points(group=METRIC_POINTS):
         _load(entry)
 
 

@@ -11,14 +11,11 @@ from pydrake.systems.framework import System
 from drake_formation.config.errors import Fault
 from drake_formation.config.values import Length, Section
 from drake_formation.formation.formation import Formation
+from drake_formation.sources import OWN
 
 Array = NDArray[np.float64]
 Numbers = tuple[Array, ...]
 """Numeric parameters of a block, in order of their indices."""
-
-
-OWN = "drake-formation"
-"""The distribution of this package's own parts."""
 
 
 class PartFailedError(ArithmeticError):

@@ -10,10 +10,7 @@ from typing import Any, TypeVar
 
 from drake_formation.parts.part import Part
 from drake_formation.parts.roles import ROLES
-from drake_formation.sources import GROUPS
-
-GROUP, _ = GROUPS
-"""Entry points of this group are parts: ``my_law = "my_package.my_law:MyLaw"``."""
+from drake_formation.sources import PART_POINTS, SESSION
 
 Class = TypeVar("Class", bound=type[Part])
 
@@ -56,11 +53,11 @@ def register(cls: Class) -> Class:
         PartError: it is no part, or has the name of one that an installed package brings.
     """
     find_all()
-    _require_part(cls, "this session")
+    _require_part(cls, SESSION)
     known = _parts[cls.role].get(cls.kind)
-    if known and known.distribution != "this session":
+    if known and known.distribution != SESSION:
         raise PartError(f"{cls.called()}: {known.distribution} has a part of this name; give it another kind")
-    cls.distribution = "this session"
+    cls.distribution = SESSION
     _parts[cls.role][cls.kind] = cls
     _told()
     return cls
@@ -114,7 +111,7 @@ def _find_all() -> None:
     for role, known in _parts.items():  # the default of a role stands first where kinds are listed
         default = ROLES[role].default
         _parts[role] = {default: known[default], **known}
-    for entry in entry_points(group=GROUP):
+    for entry in entry_points(group=PART_POINTS):
         _load(entry)
 
 

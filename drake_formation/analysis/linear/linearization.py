@@ -23,8 +23,8 @@ from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.diagram import build_diagram
 from drake_formation.formation.formation import Formation
 from drake_formation.parameters import find_block, placed_parts, robot_name
-from drake_formation.parts.part import OWN
 from drake_formation.scenario import Scenario, resolve, with_overrides
+from drake_formation.sources import OWN
 from drake_formation.systems.templates import CONVERTING
 
 Array = NDArray[np.float64]

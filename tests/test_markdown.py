@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from markdown_it import MarkdownIt
 
-from drake_formation.paper.markdown import markdown_table
+from drake_formation.markdown import markdown_table
 
 CELLS = st.text(st.sampled_from("ab|‖ 12"), min_size=1, max_size=8).map(str.strip).filter(bool)
 

@@ -4,11 +4,10 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from drake_formation.cli.app import app
 from drake_formation.cli.options import path
+from drake_formation.cli.runs_bar import runs_bar
 from drake_formation.terminal import FAILED_RUN, WRONG_INPUT, say, stop
 
 
@@ -29,14 +28,10 @@ def compare(
     from drake_formation.sweep.processes import WorkerDiedError
 
     comparison = load_comparison(source)
-    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed} / {task.total} runs"))
     try:
         with reserved(out, COMPARISON) as place:
-            with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True), transient=True) as progress:
-                task = progress.add_task(comparison.name, total=len(comparison.runs))
-                outcomes = run_comparison(
-                    comparison, workers=workers, progress=lambda done, _total: progress.update(task, completed=done)
-                )
+            with runs_bar(comparison.name) as progress:
+                outcomes = run_comparison(comparison, workers=workers, progress=progress)
             table = rows(comparison, outcomes)
             written = write_comparison(place, comparison, outcomes, table)
     except OutputError as error:

@@ -38,7 +38,7 @@ def write_comparison(
         failed: dict[str, str] = {}
 
         def draw() -> None:
-            from drake_formation.viz.comparison_figures import write_comparison_figures
+            from drake_formation.compare.figures import write_comparison_figures
 
             failed.update(write_comparison_figures(comparison, outcomes, table, folder / PICTURES))
 

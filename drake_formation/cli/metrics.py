@@ -13,6 +13,5 @@ def metrics() -> None:
 
     table = Table("name", "what it is", "unit", "from")
     for name, metric in known().items():
-        label = f"{metric.label}, by robot" if metric.each else metric.label
-        table.add_row(name, label, metric.unit, metric.distribution)
+        table.add_row(name, metric.title, metric.unit, metric.distribution)
     say(table)

@@ -4,11 +4,10 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from drake_formation.cli.app import app
 from drake_formation.cli.options import path
+from drake_formation.cli.runs_bar import runs_bar
 from drake_formation.terminal import FAILED_RUN, WRONG_INPUT, say, stop
 
 
@@ -25,11 +24,9 @@ def reproduce(
     from drake_formation.simulation import SimulationError
     from drake_formation.sweep import SweepStoppedError
 
-    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed} / {task.total} runs"))
-    with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task("study", total=None)
+    with runs_bar("study") as progress:
         try:
-            written = run_study(out, only or (), lambda done, total: progress.update(task, completed=done, total=total))
+            written = run_study(out, only or (), progress)
         except (OutputError, ValueError) as error:
             stop(str(error), WRONG_INPUT)
         except (SimulationError, SweepStoppedError) as error:

@@ -106,8 +106,9 @@ def _summary(result: "xr.Dataset", figures: "Metrics", check: "Check | None") ->
     columns = ("metric", "value", "unit") + (("check differs by",) if check else ())
     table = Table(*columns, title=f"{result.attrs['title']}, transport", caption=caption)
     for name, metric in known().items():
-        label = f"{metric.label}, by robot" if metric.each else metric.label
-        table.add_row(label, _number(figures[name]), metric.unit, *([_number(check.metrics[name])] if check else []))
+        table.add_row(
+            metric.title, _number(figures[name]), metric.unit, *([_number(check.metrics[name])] if check else [])
+        )
     if check:
         table.add_row("positions at any time", "", "m", _number(check.position_difference_m))
     return table

@@ -4,8 +4,7 @@
 - ``comparison``: the runs that it means.
 - ``run``: running them.
 - ``table``: what came out, as Markdown, CSV and LaTeX.
-
-Figures are drawn by :mod:`drake_formation.viz.comparison_figures`.
+- ``figures``: the laws laid over each other.
 """
 
 from drake_formation.compare.comparison import Comparison, load_comparison, shipped_comparisons

@@ -4,11 +4,12 @@ import csv
 import io
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from statistics import fmean, stdev
 
 from drake_formation.compare.comparison import Comparison
 from drake_formation.compare.run import Outcome
+from drake_formation.markdown import markdown_table
 
 COLUMNS = {
     "tracking_error_m": ("tracking error", "m"),
@@ -84,19 +85,14 @@ def rows(comparison: Comparison, outcomes: Sequence[Outcome]) -> list[Row]:
 
 
 def markdown(comparison: Comparison, table: Sequence[Row]) -> str:
-    """As Markdown."""
-    lines = []
+    """As Markdown, a table a case."""
+    heading = ["law", *(f"{label} ({unit})" for label, unit in COLUMNS.values()), "channels", "messages/s", "runs"]
+    parts = []
     for case in comparison.cases:
         if len(comparison.cases) > 1:
-            lines += [f"**{case}**", ""]
-        heading = ["law", *(f"{label} ({unit})" for label, unit in COLUMNS.values()), "channels", "messages/s", "runs"]
-        lines += ["| " + " | ".join(heading) + " |", "|" + " --- |" * len(heading)]
-        for row in (row for row in table if row.case == case):
-            cells = [f"**{cell.text()}**" if cell.best else cell.text() for cell in row.cells.values()]
-            words = [row.law.replace("|", "\\|"), *cells, str(row.channels), _rate(row.messages), _count(row)]
-            lines.append("| " + " | ".join(words) + " |")
-        lines.append("")
-    return "\n".join(lines).rstrip() + "\n"
+            parts.append(f"**{case}**")
+        parts.append(markdown_table(heading, [_in_markdown(row) for row in table if row.case == case]))
+    return "\n\n".join(parts) + "\n"
 
 
 def latex(comparison: Comparison, table: Sequence[Row]) -> str:
@@ -159,14 +155,13 @@ def _judged(table: Sequence[Row]) -> list[Row]:
         shown = [value for value in shown if not math.isnan(value)]
         if len(set(shown)) > 1:
             best[name] = sign * min(shown)
-    judged = []
-    for row in table:
-        cells = {
-            name: Cell(cell.mean, cell.spread, row.finished == row.runs and _is_best(cell, best.get(name)))
+    return [
+        replace(row, cells={
+            name: replace(cell, best=row.finished == row.runs and _is_best(cell, best.get(name)))
             for name, cell in row.cells.items()
-        }
-        judged.append(Row(row.case, row.law, cells, row.channels, row.messages, row.runs, row.finished))
-    return judged
+        })
+        for row in table
+    ]  # fmt: skip
 
 
 def _is_best(cell: Cell, best: float | None) -> bool:
@@ -179,6 +174,11 @@ def _rate(messages: float) -> str:
 
 def _count(row: Row) -> str:
     return str(row.runs) if row.finished == row.runs else f"{row.finished} of {row.runs}"
+
+
+def _in_markdown(row: Row) -> list[str]:
+    cells = [f"**{cell.text()}**" if cell.best else cell.text() for cell in row.cells.values()]
+    return [row.law, *cells, str(row.channels), _rate(row.messages), _count(row)]
 
 
 def _line(cells: Sequence[str]) -> str:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from drake_formation.sources import OWN
+
 if TYPE_CHECKING:
     from drake_formation.measuring.transport import Transport
 
@@ -34,7 +36,12 @@ class Metric:
     unit: str
     each: bool
     law: Measure
-    distribution: str = "drake-formation"
+    distribution: str = OWN
+
+    @property
+    def title(self) -> str:
+        """What a table calls it that shows every robot's value."""
+        return f"{self.label}, by robot" if self.each else self.label
 
     def __call__(self, transport: "Transport") -> Value:
         """Measure.

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from drake_formation.paper.markdown import markdown_table
+from drake_formation.markdown import markdown_table
 from drake_formation.paper.runs import FORMATIONS, GAINS, MATERIALS, transport
 from drake_formation.paper.store import Store
 from drake_formation.paper.tables import TABLES, Cell

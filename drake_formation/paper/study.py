@@ -8,10 +8,10 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from drake_formation.diagram import build_diagram
+from drake_formation.markdown import markdown_table
 from drake_formation.paper import curves, readings, schematics
 from drake_formation.paper.claims import CLAIMS, claim_runs
 from drake_formation.paper.fit import fit
-from drake_formation.paper.markdown import markdown_table
 from drake_formation.paper.published import PROVENANCE
 from drake_formation.paper.runs import (
     AGGREGATION_GAINS,

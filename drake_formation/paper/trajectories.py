@@ -4,9 +4,9 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from drake_formation.markdown import markdown_table
 from drake_formation.measuring import metrics
 from drake_formation.paper.curves import draw_transport, phase, since_hand_off
-from drake_formation.paper.markdown import markdown_table
 from drake_formation.paper.runs import transport
 from drake_formation.paper.store import Store
 from drake_formation.scenario import Scenario, load_scenario, with_overrides

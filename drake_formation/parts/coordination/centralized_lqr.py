@@ -1,6 +1,5 @@
 """The LQR of the whole formation as one system: the optimum that decentralized laws are compared with."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,22 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pydrake.systems.controllers import LinearQuadraticRegulator
 
-from drake_formation.config.errors import Fault
 from drake_formation.formation.formation import Formation
 from drake_formation.parts.coordination.linear_formation import formation_matrices, spring_matrix
 from drake_formation.parts.coordination.state_feedback import StateFeedback, rows_of
-from drake_formation.parts.coordination.weights import (
-    NO_OPTIMUM,
-    Weights,
-    can_be_designed,
-    hearing_faults,
-    input_cost,
-    no_optimum,
-    state_cost,
-    together_faults,
-    weight_faults,
-)
-from drake_formation.parts.part import Numbers, Part
+from drake_formation.parts.coordination.weights import FormationControl, Weights, input_cost, state_cost
+from drake_formation.parts.part import Numbers
 from drake_formation.parts.registry import part
 
 Array = NDArray[np.float64]
@@ -68,7 +56,7 @@ def _gain(a: Array, b: Array, q: Array, r: Array) -> Array:
 
 
 @part("coordination", kind="centralized_lqr")
-class CentralizedLqr(Part):
+class CentralizedLqr(FormationControl):
     """The LQR of all robots and the object's linearized springs as one system of 2N inputs, by Drake.
 
     Each robot applies its own two rows of the gain, which is the whole control: ``tracking.kind`` is ``none``. Without
@@ -77,18 +65,11 @@ class CentralizedLqr(Part):
     """
 
     Config = Weights
+    alike = ("relative_cost",)
 
-    def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:
-        """Whether every robot hears all others, is under this control alone, and Drake finds the optimum."""
-        faults = [*weight_faults(self.config), *together_faults(formation, owner, ("relative_cost",))]
-        faults += hearing_faults(formation, owner)
-        yield from faults
-        if faults or not can_be_designed(formation):
-            return
-        try:
-            centralized_gains(formation)
-        except NO_OPTIMUM:
-            yield no_optimum()
+    def design(self, formation: Formation) -> object:
+        """The gains without and by the object."""
+        return centralized_gains(formation)
 
     def numbers(self, formation: Formation, owner: int) -> Numbers:
         """Slots of the robot and of those it hears, and its rows of the gains without and by the object."""

@@ -1,30 +1,19 @@
 """Model predictive control of the whole formation, with force limits and a distance to obstacles."""
 
-from collections.abc import Hashable, Iterator
+from collections.abc import Hashable
 from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from drake_formation.config.errors import Fault
 from drake_formation.config.values import NonNegative, Positive
 from drake_formation.formation.formation import Formation
 from drake_formation.parts.coordination.linear_formation import formation_matrices, spring_matrix
 from drake_formation.parts.coordination.mpc_controller import MpcController, Schedule
 from drake_formation.parts.coordination.prediction import SampledModel, sampled
-from drake_formation.parts.coordination.weights import (
-    NO_OPTIMUM,
-    Weights,
-    can_be_designed,
-    hearing_faults,
-    input_cost,
-    no_optimum,
-    state_cost,
-    together_faults,
-    weight_faults,
-)
-from drake_formation.parts.part import Numbers, Part
+from drake_formation.parts.coordination.weights import FormationControl, Weights, input_cost, state_cost
+from drake_formation.parts.part import Numbers
 from drake_formation.parts.registry import part
 
 Array = NDArray[np.float64]
@@ -53,7 +42,7 @@ class MpcConfig(Weights):
 
 
 @part("coordination", kind="mpc")
-class Mpc(Part):
+class Mpc(FormationControl):
     """Receding horizon control of all robots and the object's linearized springs as one system, by Drake and OSQP.
 
     Every robot hears all others, solves the same quadratic program, and applies its own force until the next sample.
@@ -69,19 +58,11 @@ class Mpc(Part):
     """
 
     Config = MpcConfig
+    alike = ("relative_cost", "period", "horizon")
 
-    def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:
-        """Whether every robot hears all others, is under this control alone, and the cost has an optimum."""
-        faults = [*weight_faults(self.config)]
-        faults += together_faults(formation, owner, ("relative_cost", "period", "horizon"))
-        faults += hearing_faults(formation, owner)
-        yield from faults
-        if faults or not can_be_designed(formation):
-            return
-        try:
-            models(formation)
-        except NO_OPTIMUM:
-            yield no_optimum()
+    def design(self, formation: Formation) -> object:
+        """The models without and with the object."""
+        return models(formation)
 
     def structure(self) -> Hashable:
         """When plans are made, and for how long."""

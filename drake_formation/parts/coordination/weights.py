@@ -1,6 +1,7 @@
 """What an optimal control of the whole formation costs, and what it takes for a robot to carry it out."""
 
 from collections.abc import Iterator
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,6 +93,33 @@ def hearing_faults(formation: Formation, owner: int) -> Iterator[Fault]:
         others = f"robot{'s' if len(missing) > 1 else ''} {shortened(', '.join(str(j + 1) for j in missing))}"
         message = f"robot {owner + 1} does not hear {others}, and its force depends on the state of every robot"
         yield Fault(("graph",), message, allowed="complete, or a channel to every robot from every other")
+
+
+class FormationControl(Part):
+    """One optimal control of all robots, which each carries out for itself and so hears all others for."""
+
+    alike: ClassVar[tuple[str, ...]]
+    """Fields that are one for all robots."""
+
+    def design(self, formation: Formation) -> object:
+        """The optimum, which is kept with the formation.
+
+        Raises:
+            One of NO_OPTIMUM: there is none.
+        """
+        raise NotImplementedError
+
+    def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:
+        """Whether every robot hears all others, is under this control alone, and the cost has an optimum."""
+        faults = [*weight_faults(self.config), *together_faults(formation, owner, self.alike)]
+        faults += hearing_faults(formation, owner)
+        yield from faults
+        if faults or not can_be_designed(formation):
+            return
+        try:
+            self.design(formation)
+        except NO_OPTIMUM:
+            yield no_optimum()
 
 
 NO_OPTIMUM = (RuntimeError, ArithmeticError, np.linalg.LinAlgError, SystemExit)

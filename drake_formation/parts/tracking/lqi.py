@@ -12,11 +12,12 @@ from pydrake.systems.controllers import LinearQuadraticRegulator
 from drake_formation.config.errors import Fault
 from drake_formation.config.values import CostMatrix, Section
 from drake_formation.formation.formation import Formation
-from drake_formation.parts.part import Numbers, Part
+from drake_formation.parts.part import Numbers
 from drake_formation.parts.registry import part
 from drake_formation.parts.tracking.costs import cost_matrix, designed_poles, input_cost_faults, state_cost_faults
 from drake_formation.parts.tracking.integral_controller import IntegralController
 from drake_formation.parts.tracking.lqr import robot_matrices
+from drake_formation.parts.tracking.regulator import Regulator
 
 Array = NDArray[np.float64]
 
@@ -49,7 +50,7 @@ def lqi_gain(mass: float, state_cost: ArrayLike, input_cost: ArrayLike) -> Array
 
 
 @part("tracking", kind="lqi")
-class Lqi(Part):
+class Lqi(Regulator):
     """LQR with integral action on the position's error."""
 
     class Config(Section):
@@ -67,21 +68,18 @@ class Lqi(Part):
             default=False, description="add m_i a_r, the force that the reference's acceleration takes; chosen: none"
         )
 
-    def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:
-        """Whether the weights give a gain that brings the robot to its set point."""
-        resting = state_cost_faults(self.config.Q, STATES, slice(4, 6), "position integral")
-        faults = [*resting, *input_cost_faults(self.config.R)]
-        yield from faults
-        mass = float(formation.masses[owner])
-        if not faults and not _stabilizes(mass, self.config.Q, self.config.R):
-            message = f"Drake finds no stabilizing gain for a robot of {mass:g} kg"
-            yield Fault((), message, allowed="Q, R and masses of less different sizes")
+    def weight_faults(self) -> Iterator[Fault]:
+        """What is wrong with Q and R."""
+        yield from state_cost_faults(self.config.Q, STATES, slice(4, 6), "position integral")
+        yield from input_cost_faults(self.config.R)
 
-    def numbers(self, formation: Formation, owner: int) -> Numbers:
-        """The gain, the mass in the feed-forward, and the slot."""
-        mass = float(formation.masses[owner])
-        gain = lqi_gain(mass, cost_matrix(self.config.Q, STATES), cost_matrix(self.config.R, 2))
-        return gain, np.array([mass if self.config.feed_forward else 0.0]), formation.slots[owner]
+    def stabilizes(self, mass: float) -> bool:
+        """Whether Drake finds a gain."""
+        return _stabilizes(mass, self.config.Q, self.config.R)
+
+    def gain(self, mass: float) -> Array:
+        """K, shape (2, 6), in N/m, N s/m and N/(m s)."""
+        return lqi_gain(mass, cost_matrix(self.config.Q, STATES), cost_matrix(self.config.R, 2))
 
     def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:  # noqa: ARG002
         """The controller."""

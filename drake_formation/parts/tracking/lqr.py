@@ -12,10 +12,11 @@ from pydrake.systems.controllers import LinearQuadraticRegulator
 from drake_formation.config.errors import Fault
 from drake_formation.config.values import CostMatrix, Section
 from drake_formation.formation.formation import Formation
-from drake_formation.parts.part import Numbers, Part
+from drake_formation.parts.part import Numbers
 from drake_formation.parts.registry import part
 from drake_formation.parts.tracking.controller import TrackingController
 from drake_formation.parts.tracking.costs import cost_matrix, designed_poles, input_cost_faults, state_cost_faults
+from drake_formation.parts.tracking.regulator import Regulator
 from drake_formation.systems.scalars import Scalar
 
 Array = NDArray[np.float64]
@@ -106,7 +107,7 @@ def lqr_force(
 
 
 @part("tracking", kind="lqr")
-class Lqr(Part):
+class Lqr(Regulator):
     """The local LQR about the reference (paper, Eqs. 9-12)."""
 
     class Config(Section):
@@ -132,21 +133,18 @@ class Lqr(Part):
         """R, shape (2, 2)."""
         return cost_matrix(self.config.R, 2)
 
-    def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:
-        """Whether the weights give a gain that brings the robot to its set point."""
-        faults = [*state_cost_faults(self.config.Q), *input_cost_faults(self.config.R)]
-        yield from faults
-        mass = float(formation.masses[owner])
-        # Weights that are sound one by one may still be too far apart for Drake to solve (paper, Eq. 12).
-        if not faults and not _stabilizes(mass, self.config.Q, self.config.R):
-            message = f"Drake finds no stabilizing gain for a robot of {mass:g} kg"
-            yield Fault((), message, allowed="Q, R and masses of less different sizes")
+    def weight_faults(self) -> Iterator[Fault]:
+        """What is wrong with Q and R."""
+        yield from state_cost_faults(self.config.Q)
+        yield from input_cost_faults(self.config.R)
 
-    def numbers(self, formation: Formation, owner: int) -> Numbers:
-        """The gain K_l, the mass in the feed-forward, and the slot."""
-        mass = float(formation.masses[owner])
-        gain = lqr_gain(mass, self.state_cost, self.input_cost)
-        return gain, np.array([mass if self.config.feed_forward else 0.0]), formation.slots[owner]
+    def stabilizes(self, mass: float) -> bool:
+        """Whether Drake finds a gain."""
+        return _stabilizes(mass, self.config.Q, self.config.R)
+
+    def gain(self, mass: float) -> Array:
+        """K_l, shape (2, 4), in N/m and N s/m."""
+        return lqr_gain(mass, self.state_cost, self.input_cost)
 
     def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:  # noqa: ARG002
         """The controller."""

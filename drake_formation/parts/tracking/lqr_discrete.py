@@ -12,9 +12,10 @@ from pydrake.systems.controllers import DiscreteTimeLinearQuadraticRegulator
 from drake_formation.config.errors import Fault
 from drake_formation.config.values import CostMatrix, Section
 from drake_formation.formation.formation import Formation
-from drake_formation.parts.part import Numbers, Part
+from drake_formation.parts.part import Numbers
 from drake_formation.parts.registry import part
 from drake_formation.parts.tracking.costs import cost_matrix, designed_poles, input_cost_faults, state_cost_faults
+from drake_formation.parts.tracking.regulator import Regulator
 from drake_formation.parts.tracking.sampled_controller import SampledController
 
 Array = NDArray[np.float64]
@@ -52,7 +53,7 @@ def lqr_discrete_gain(mass: float, period: float, state_cost: ArrayLike, input_c
 
 
 @part("tracking", kind="lqr_discrete")
-class LqrDiscrete(Part):
+class LqrDiscrete(Regulator):
     """The LQR of the sampled robot, with its force held over a period."""
 
     class Config(Section):
@@ -69,25 +70,26 @@ class LqrDiscrete(Part):
             default=False, description="add m_i a_r, the force that the reference's acceleration takes; chosen: none"
         )
 
-    def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:
-        """Whether the weights give a gain that brings the robot to its set point."""
-        config, mass = self.config, float(formation.masses[owner])
-        faults = [*state_cost_faults(config.Q), *input_cost_faults(config.R)]
-        yield from faults
-        if not faults and not _stabilizes(mass, config.period, config.Q, config.R):
-            message = f"Drake finds no stabilizing gain for a robot of {mass:g} kg"
-            yield Fault((), message, allowed="Q, R, masses and periods of less different sizes")
+    designed_from = "Q, R, masses and periods"
+
+    def weight_faults(self) -> Iterator[Fault]:
+        """What is wrong with Q and R."""
+        yield from state_cost_faults(self.config.Q)
+        yield from input_cost_faults(self.config.R)
+
+    def stabilizes(self, mass: float) -> bool:
+        """Whether Drake finds a gain."""
+        return _stabilizes(mass, self.config.period, self.config.Q, self.config.R)
+
+    def gain(self, mass: float) -> Array:
+        """K, shape (2, 4), in N/m and N s/m."""
+        config = self.config
+        return lqr_discrete_gain(mass, config.period, cost_matrix(config.Q, 4), cost_matrix(config.R, 2))
 
     def structure(self) -> Hashable:
         """The period, which a block is made with."""
         period: float = self.config.period
         return period
-
-    def numbers(self, formation: Formation, owner: int) -> Numbers:
-        """The gain, the mass in the feed-forward, and the slot."""
-        config, mass = self.config, float(formation.masses[owner])
-        gain = lqr_discrete_gain(mass, config.period, cost_matrix(config.Q, 4), cost_matrix(config.R, 2))
-        return gain, np.array([mass if config.feed_forward else 0.0]), formation.slots[owner]
 
     def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:  # noqa: ARG002
         """The controller."""

@@ -118,8 +118,14 @@ def rebuild_sections() -> None:
 
 def takes_lists(part: type[Part], field: str) -> bool:
     """Whether a list is one value of a part's field, and not one for each robot."""
-    info = part.Config.model_fields[field]
-    return is_list(info.annotation)
+    config: Any = part.Config
+    return field in _listed_fields(config)
+
+
+@functools.lru_cache(maxsize=1024)
+def _listed_fields(config: Any) -> frozenset[str]:
+    """Fields of a configuration of which a value may be a list."""
+    return frozenset(name for name, info in config.model_fields.items() if is_list(info.annotation))
 
 
 def _annotation(info: FieldInfo, role: Role) -> Any:

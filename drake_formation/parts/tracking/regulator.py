@@ -1,6 +1,7 @@
 """What the linear quadratic regulators of one robot have in common."""
 
 from collections.abc import Iterator
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,13 +33,17 @@ class Regulator(Part):
 
     def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:
         """Whether the weights give a gain that brings the robot to its set point."""
-        faults = list(self.weight_faults())
-        yield from faults
+        yield from self._faults
         mass = float(formation.masses[owner])
         # Weights that are sound one by one may still be too far apart for Drake to solve (paper, Eq. 12).
-        if not faults and not self.stabilizes(mass):
+        if not self._faults and not self.stabilizes(mass):
             message = f"Drake finds no stabilizing gain for a robot of {mass:g} kg"
             yield Fault((), message, allowed=f"{self.designed_from} of less different sizes")
+
+    @cached_property
+    def _faults(self) -> tuple[Fault, ...]:
+        """Of the weights; robots that are alike are one part, which looks once."""
+        return tuple(self.weight_faults())
 
     def numbers(self, formation: Formation, owner: int) -> Numbers:
         """The gain, the mass in the feed-forward, and the slot."""

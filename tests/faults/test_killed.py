@@ -6,12 +6,12 @@ those of a Dask worker and scheduler in ``tests/sweep/test_cluster.py``.
 
 import os
 import signal
-import sqlite3
 import time
 from pathlib import Path
 
 import pytest
 from faults.conftest import RUN, ended, files, started, sweep_file
+from watching import count, gone
 
 pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="no /proc to find processes in")
 
@@ -21,31 +21,10 @@ def children(pid):
     return [int(line) for file in Path(f"/proc/{pid}/task").glob("*/children") for line in file.read_text().split()]
 
 
-def gone(pid):
-    """Whether a process ends within some seconds."""
-    for _ in range(400):
-        try:
-            if Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z":
-                return True
-        except OSError:
-            return True
-        time.sleep(0.05)
-    return False
-
-
 def until(condition, process):
     while not condition():
         assert process.poll() is None
         time.sleep(0.02)
-
-
-def count(folder):
-    """How many runs a sweep's folder holds."""
-    try:
-        with sqlite3.connect(f"file:{folder / 'runs.sqlite'}?mode=ro", uri=True, timeout=5) as database:
-            return database.execute("SELECT count(*) FROM runs").fetchone()[0]
-    except sqlite3.Error:
-        return 0
 
 
 @pytest.mark.parametrize(

@@ -6,10 +6,10 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 from pathlib import Path
 
 import pytest
+from watching import gone
 
 from drake_formation.sweep import processes as module
 from drake_formation.sweep.errors import SweepError, SweepStoppedError
@@ -34,18 +34,6 @@ class Deadly:
         return os._exit, (7,)
 
 
-def gone(pid):
-    """Whether a process ends within some seconds."""
-    for _ in range(200):
-        try:
-            if Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z":
-                return True
-        except OSError:
-            return True
-        time.sleep(0.05)
-    return False
-
-
 def test_a_workers_death_is_its_chunks_alone_and_the_next_has_a_new_worker(chunk, task):
     with Processes(1) as workers:
         assert workers.submit(chunk(0)).result().outcomes[0].error is None
@@ -55,8 +43,8 @@ def test_a_workers_death_is_its_chunks_alone_and_the_next_has_a_new_worker(chunk
         assert workers.submit(chunk(1)).result().outcomes[0].error is None
         (second,) = workers.pids
     assert first != second
-    assert gone(first)
-    assert gone(second)
+    assert gone(first, seconds=10)
+    assert gone(second, seconds=10)
 
 
 def test_a_killed_worker_says_so(chunk):
@@ -142,7 +130,7 @@ def test_workers_end_in_silence_when_their_parent_is_killed(points, waiting):
         parent.kill()
         parent.wait()
         assert workers
-        assert all(map(gone, workers))
+        assert all(gone(pid, seconds=10) for pid in workers)
         assert parent.stderr.read() == ""
 
 

@@ -4,7 +4,6 @@ import csv
 import json
 import os
 import signal
-import sqlite3
 import subprocess
 import sys
 import time
@@ -13,12 +12,12 @@ import numpy as np
 import pytest
 import xarray as xr
 from sweep.quick import FAILING, QUICK, quick_sweep
+from watching import count
 
 from drake_formation import metrics, simulate
 from drake_formation.sweep import SweepError, SweepStoppedError, load_sweep, run_sweep
 from drake_formation.sweep import run as module
 from drake_formation.sweep.processes import Processes
-from drake_formation.sweep.store import DATABASE
 from drake_formation.sweep.work import CODE, versions
 
 SERIES = {"variables": ["position", "control_force"], "every": 0.25}
@@ -90,15 +89,6 @@ def test_a_worker_killed_half_way_makes_no_difference(tmp_path, serial, monkeypa
     found = run(LARGER, tmp_path, executor="processes", workers=2, progress=kill_one)
     assert killed
     xr.testing.assert_identical(found, serial)
-
-
-def count(folder):
-    """How many runs a folder holds."""
-    try:
-        with sqlite3.connect(f"file:{folder / DATABASE}?mode=ro", uri=True, timeout=5) as database:
-            return database.execute("SELECT count(*) FROM runs").fetchone()[0]
-    except sqlite3.Error:
-        return 0
 
 
 COMMAND = """

@@ -24,3 +24,10 @@ def length_of(vectors: Array) -> Array:
     with np.errstate(over="ignore"):  # a run that diverged may end in numbers whose squares overflow
         lengths: Array = np.sqrt(vectors[..., 0] ** 2 + vectors[..., 1] ** 2)
     return lengths
+
+
+def least_length(begin: Array, way: Array) -> Array:
+    """Least length of a vector on its way from where it begins straight to the way's end, over the last axis."""
+    squared = np.maximum(way[..., 0] ** 2 + way[..., 1] ** 2, np.finfo(float).tiny)
+    along = begin[..., 0] * way[..., 0] + begin[..., 1] * way[..., 1]
+    return length_of(begin + np.clip(-along / squared, 0.0, 1.0)[..., None] * way)

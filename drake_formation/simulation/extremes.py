@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.simulation.motion import Motion
+from drake_formation.vectors import least_length, length_of
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -74,7 +75,7 @@ class Vectors:
 def longest(vectors: Vectors, *, each: bool = False) -> Array:
     """The greatest length of any vector at any time, shape (1,); or of each, shape (vectors,)."""
     nothing = np.zeros(vectors.samples.shape[1])
-    return _extreme(vectors, 1.0, nothing, lambda begin, end: np.maximum(_length(begin), _length(end)), each)
+    return _extreme(vectors, 1.0, nothing, lambda begin, end: np.maximum(length_of(begin), length_of(end)), each)
 
 
 def shortest(vectors: Vectors, radii: Array | float = 0.0, *, each: bool = False) -> Array:
@@ -90,14 +91,15 @@ def last_beyond(vectors: Vectors, bound: float) -> tuple[int, float] | None:
         The step (index of the sample before it) and how much of it has passed; the last sample and 0 where one still
         is at the end; None where none ever is.
     """
-    beyond = _length(vectors.samples) > bound
+    beyond = length_of(vectors.samples) > bound
     if beyond[-1].any():
         return len(beyond) - 1, 0.0
     steps = beyond.any(axis=1)
     first = int(np.flatnonzero(steps)[-1]) if steps.any() else 0
     # From there on all samples are within the bound, but some steps may still reach beyond it.
     reach = (
-        np.maximum(_length(vectors.samples[first:-1]), _length(vectors.samples[first + 1 :])) + vectors.bulge[first:]
+        np.maximum(length_of(vectors.samples[first:-1]), length_of(vectors.samples[first + 1 :]))
+        + vectors.bulge[first:]
     )
     for step in np.flatnonzero((reach > bound).any(axis=1))[::-1] + first:
         share = _last_share_beyond(vectors, step, bound, 0.0, 1.0, vectors.bulge[step])
@@ -120,7 +122,7 @@ def _last_share_beyond(
         bulge: how far each vector leaves the chord from there to there at the most, shape (vectors,).
     """
     share, bulge = np.linspace(low, high, CUTS + 1), bulge / CUTS**2
-    lengths = _length(vectors.within(np.array([step]), share[None])[0])
+    lengths = length_of(vectors.within(np.array([step]), share[None])[0])
     longer = np.maximum(lengths[:-1], lengths[1:])
     for part in np.flatnonzero((longer + bulge > bound).any(axis=1))[::-1]:
         if high - low > FINE:
@@ -142,7 +144,9 @@ def _extreme(vectors: Vectors, sign: float, more: Array, on_chord: Score, each: 
         on_chord: the highest score, without what is added, on a straight line from a vector to another.
         each: of each.
     """
-    best: Array = (sign * _length(vectors.samples) + more).max(axis=0 if each else None, keepdims=not each).reshape(-1)
+    best: Array = (
+        (sign * length_of(vectors.samples) + more).max(axis=0 if each else None, keepdims=not each).reshape(-1)
+    )
     reach = on_chord(vectors.samples[:-1], vectors.samples[1:]) + more + vectors.bulge
     step, vector = np.nonzero(reach > best + NEGLIGIBLE * (1 + abs(best)))
     low, high, bulge = np.zeros(len(step)), np.ones(len(step)), vectors.bulge[step, vector]
@@ -154,7 +158,7 @@ def _extreme(vectors: Vectors, sign: float, more: Array, on_chord: Score, each: 
         values = _values(vectors, step, vector, share)
         parts = on_chord(values[:, :-1], values[:, 1:]) + more[vector, None]
         chosen, highest, rest = parts.argmax(axis=1), parts.max(axis=1), bulge / cuts**2
-        known = np.maximum((sign * _length(values)).max(axis=1) + more[vector], highest - rest)
+        known = np.maximum((sign * length_of(values)).max(axis=1) + more[vector], highest - rest)
         np.maximum.at(best, place, known)
         if cuts == CUTS:  # a few are too few to tell where in its step a vector is at its extreme
             low, high = share[row, np.maximum(chosen - 1, 0)], share[row, np.minimum(chosen + 2, cuts)]
@@ -172,14 +176,6 @@ def _values(vectors: Vectors, step: Indices, vector: Indices, share: Array) -> A
     return vectors.within(step, share)[np.arange(len(step)), :, vector]
 
 
-def _length(vectors: Array) -> Array:
-    lengths: Array = np.sqrt(vectors[..., 0] ** 2 + vectors[..., 1] ** 2)
-    return lengths
-
-
 def _chord_distance(begin: Array, end: Array) -> Array:
     """Least length on the straight line from a vector to another."""
-    way = end - begin
-    squared = np.maximum(way[..., 0] ** 2 + way[..., 1] ** 2, np.finfo(float).tiny)
-    along = begin[..., 0] * way[..., 0] + begin[..., 1] * way[..., 1]
-    return _length(begin + np.clip(-along / squared, 0.0, 1.0)[..., None] * way)
+    return least_length(begin, end - begin)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from drake_formation.scenario import Scenario, resolve
 from drake_formation.simulation.recorder import Recording
-from drake_formation.vectors import length_of
+from drake_formation.vectors import least_length, length_of
 
 Array = NDArray[np.float64]
 
@@ -123,7 +123,4 @@ def chattering(scenario: Scenario, clearance: Array) -> str:
 def _least_distance(offset: Array, move: Array) -> Array:
     """How near the way from an offset along a move comes to the origin (m), shape (..., N)."""
     with np.errstate(over="ignore", invalid="ignore"):  # a run that diverged may end in numbers whose squares overflow
-        squared = np.maximum(move[..., 0] ** 2 + move[..., 1] ** 2, np.finfo(float).tiny)
-        along = offset[..., 0] * move[..., 0] + offset[..., 1] * move[..., 1]
-        result: Array = length_of(offset + np.clip(-along / squared, 0.0, 1.0)[..., None] * move)
-    return result
+        return least_length(offset, move)

@@ -20,18 +20,7 @@ def distance_force(
     using structural potential functions, IFAC World Congress 2002), by the law of the paper's springs (Eq. 2). It
     knows no direction, so it holds the shape and leaves the formation free to turn.
 
-    Args:
-        dx: position of robot i relative to robot j (m), x component of q_i − q_j.
-        dy: its y component (m).
-        dvx: velocity of robot i relative to robot j (m/s), x component.
-        dvy: its y component (m/s).
-        delta: consensus gain δ (N/m).
-        delta_v: velocity consensus gain δ_v (N s/m).
-        hx: desired displacement h_i − h_j (m), x component.
-        hy: its y component (m).
-
-    Returns:
-        Components of the force on robot i (N).
+    Arguments and result as in :func:`drake_formation.parts.coordination.consensus.consensus_force`.
     """
     fx, fy = hookean_spring_force(dx, dy, dvx, dvy, delta, delta_v, hx, hy)
     return -fx, -fy

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+import numpy as np
 from pydantic import Field
 
 from drake_formation.config.errors import Fault, shown
@@ -70,7 +71,8 @@ class Spring(SpringLaw):
         config = self.config
         if not config.pre_tension:
             return
-        distance = float(formation.springs.lengths(formation.slots)[owner])
+        first, second = formation.springs.pairs[owner]
+        distance = float(np.linalg.norm(formation.slots[first] - formation.slots[second]))
         value = shown(config.pre_tension)
         if config.rest_length is not None:
             yield Fault(("pre_tension",), "given together with rest_length", value, "one of the two")

@@ -52,6 +52,6 @@ def _read(value: Any, info: ValidationInfo) -> Any:
 Trace = Annotated[
     tuple[Annotated[float, Field(ge=0)], ...],
     Field(strict=False, max_length=MOST),
-    BeforeValidator(_read),
+    BeforeValidator(_read, json_schema_input_type=str | tuple[float, ...]),
 ]
 """Numbers, or the name of a file of them beside the scenario."""

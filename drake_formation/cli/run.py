@@ -106,6 +106,8 @@ def _summary(result: "xr.Dataset", figures: "Metrics", check: "Check | None") ->
     columns = ("metric", "value", "unit") + (("check differs by",) if check else ())
     table = Table(*columns, title=f"{result.attrs['title']}, transport", caption=caption)
     for name, metric in known().items():
+        if figures[name] is None:  # nothing to measure
+            continue
         table.add_row(
             metric.title, _number(figures[name]), metric.unit, *([_number(check.metrics[name])] if check else [])
         )

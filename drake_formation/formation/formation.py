@@ -38,6 +38,7 @@ class Formation:
         parts: the parts of every role: one a robot, one an edge for ``spring``, one a channel for ``channel``, and one
             in all for ``reference`` and ``object``.
         seed: of all that is random in it.
+        tolerance: consensus error beyond which it counts as lost (m).
     """
 
     name: str
@@ -54,6 +55,7 @@ class Formation:
     law: type[Any]
     parts: Mapping[str, tuple[Any, ...]]
     seed: int = 0
+    tolerance: float = 0.05
 
     def __post_init__(self) -> None:
         for array in (self.slots, self.starts, self.centre, self.goal, self.obstacles):
@@ -98,6 +100,12 @@ class Formation:
     def start_velocities(self) -> Array:
         """Velocity at which every robot starts (m/s), shape (N, 2)."""
         return np.array([getattr(part.config, "velocity", (0.0, 0.0)) for part in self.parts["robot"]], dtype=float)
+
+    @cached_property
+    def telling_channels(self) -> tuple[int, ...]:
+        """The channels that count packets, by their rows in ``channels.pairs``, so far as somebody listens to them."""
+        parts = self.parts["channel"]
+        return tuple(k for k, part in enumerate(parts) if getattr(part, "tells_traffic", False))
 
     @cached_property
     def rest_lengths(self) -> Array:

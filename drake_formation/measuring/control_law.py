@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from drake_formation.formation.formation import Formation
 from drake_formation.parameters import block_parameters, robot_name
 from drake_formation.parts.avoidance.khatib import Khatib, avoidance_force
-from drake_formation.parts.channels.ideal import IdealChannel
 from drake_formation.parts.coordination.consensus import LAWS, Consensus
 from drake_formation.parts.part import Part
 from drake_formation.parts.references.set_point import SetPointReference
@@ -26,7 +25,6 @@ KNOWN: dict[str, tuple[type[Part], ...]] = {
     "coordination": (Consensus,),
     "avoidance": (Khatib,),
     "reference": (SetPointReference, MovingReference),
-    "channel": (IdealChannel,),
 }
 """The parts whose laws are here; all are functions of time and the robots' states alone."""
 
@@ -43,7 +41,8 @@ def control_law(formation: Formation, times: Array, recorded: Array) -> Law:
         recorded: the control forces then (N), shape (m, N, 2).
     """
     known = all(isinstance(part, kinds) for role, kinds in KNOWN.items() for part in formation.parts[role])
-    if known and not any(part.margin or part.config.robots for part in formation.parts["avoidance"]):
+    wired = all(getattr(channel, "is_wire", False) for channel in formation.parts["channel"])
+    if known and wired and not any(part.margin or part.config.robots for part in formation.parts["avoidance"]):
         return ControlLaw(formation)
 
     def between(at: Array, position: Array, _velocity: Array) -> Array:

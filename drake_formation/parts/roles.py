@@ -8,8 +8,8 @@ STATE = 4
 """Numbers that robots tell each other: position q (m) and velocity v (m/s), in the world frame."""
 
 
-TRAFFIC = 6
-"""Numbers that a channel of packets tells of itself."""
+TRAFFIC = ("sent", "lost", "delivered", "overtaken", "late", "sent_at")
+"""What a channel of packets tells of itself: how many so far, and when the one in use was sent (s)."""
 
 
 @dataclass(frozen=True)
@@ -136,9 +136,7 @@ ROLES: dict[str, Role] = {
             ),
             (
                 Port("received", STATE, "what the listening robot takes for it (m, m/s)", required=True),
-                Port(
-                    "traffic", TRAFFIC, "packets sent, lost, delivered, overtaken, late, and when the last was sent (s)"
-                ),
+                Port("traffic", len(TRAFFIC), "packets sent, lost, delivered, overtaken, late; when the last was sent"),
             ),
         ),
     )

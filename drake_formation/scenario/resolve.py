@@ -128,6 +128,7 @@ def _formation(
         transport_duration=scenario.transport.duration,
         law=kinds("spring")[scenario.springs.law],
         seed=scenario.seed,
+        tolerance=scenario.transport.tolerance,
         parts=parts,
     )
 

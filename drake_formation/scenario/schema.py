@@ -180,6 +180,9 @@ class Transport(Section):
 
     goal: Point = Field(description="where the formation centre is carried to (m)")
     duration: Positive = Field(default=60.0, description="how long (s); chosen: 60")
+    tolerance: Positive = Field(
+        default=0.05, description="consensus error (m) beyond which the formation counts as lost; chosen: 0.05"
+    )
     reference: Annotated[Any, PartOf("reference")] = Field(
         default_factory=PartOf("reference").default,
         description="where the formation centre should be on the way; inferred: a set point",

@@ -36,7 +36,7 @@ class Recording(Protocol):
         """0 during aggregation, 1 during transport; shape (samples,)."""
 
     def series(self, port: str) -> Array:
-        """Values of one of the ports ``RECORDED``, or of ``OBJECT`` with N = 1, shape (samples, N, size)."""
+        """Values of one of the ports ``RECORDED``, of ``OBJECT`` with N = 1, or of ``traffic``: (samples, N, size)."""
 
     def accelerations(self) -> dict[int, Array]:
         """Acceleration of each robot that has such a port (m/s²), from 0, each of shape (samples, 2)."""
@@ -53,7 +53,15 @@ def recorded_ports(diagram: Diagram, robots: int) -> dict[str, list[str]]:
     ports = {name: [f"{robot_name(i)}_{name}" for i in range(robots)] for name in RECORDED}
     if told := telling(diagram, robots):
         ports[ACCELERATION] = list(told.values())
+    if telling_channels := traffic_ports(diagram):
+        ports["traffic"] = telling_channels
     return ports | {name: [name] for name in OBJECT if diagram.HasOutputPort(name)}
+
+
+def traffic_ports(diagram: Diagram) -> list[str]:
+    """The output ports at which channels of packets tell what becomes of these, in the order of the channels."""
+    names = [diagram.get_output_port(k).get_name() for k in range(diagram.num_output_ports())]
+    return [name for name in names if name.startswith("channel_") and name.endswith("_traffic")]
 
 
 class Recorder:

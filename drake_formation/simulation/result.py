@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from drake_formation.parts.roles import TRAFFIC
 from drake_formation.scenario import resolve, to_yaml
 from drake_formation.scenario.source import parse
 from drake_formation.scenario.validate import validate
@@ -49,6 +50,11 @@ OBJECT_VARIABLES = {
 }
 """Those there are where the object is a body of its own."""
 
+TRAFFIC_VARIABLES = {
+    "traffic": (("time", "channel", "count"), "1, and s", "packets so far, and when the one in use was sent"),
+}
+"""Those there are where channels carry packets."""
+
 
 def labelled_result(series: Series) -> "xr.Dataset":
     """Label what came out of a run.
@@ -59,17 +65,19 @@ def labelled_result(series: Series) -> "xr.Dataset":
     Returns:
         A dataset over ``time`` (every step of the integrator), ``robot`` (from 1), ``axis`` (x, y), ``spring``
         (``1-2``) and ``obstacle`` (from 1); an object that is a body of its own has ``object_pose`` over ``pose``, and
-        ``object_strain``, as its kind says. ``deviation`` is NaN before the hand-off. A sample
+        ``object_strain``, as its kind says; channels that carry packets have ``traffic`` over ``channel`` (what robot 2
+        tells robot 1 is ``2-1``) and ``count``. ``deviation`` is NaN before the hand-off. A sample
         at the hand-off shows what is so from then on. Between samples the motion is the quintic with position,
         velocity and acceleration at both ends; :func:`drake_formation.measuring.metrics` measures that. The attribute
         ``remark`` says what to know about the run, if there is anything.
     """
     import xarray as xr  # slow to import, and not needed to build a diagram
 
-    has_body = resolve(series.scenario).has_body
+    has_body, told = resolve(series.scenario).has_body, resolve(series.scenario).telling_channels
+    named = VARIABLES | (OBJECT_VARIABLES if has_body else {}) | (TRAFFIC_VARIABLES if told else {})
     variables = {
         name: xr.Variable(dimensions, series[name], {"units": units, "long_name": meaning})
-        for name, (dimensions, units, meaning) in (VARIABLES | (OBJECT_VARIABLES if has_body else {})).items()
+        for name, (dimensions, units, meaning) in named.items()
     }
     variables["phase"] = variables["phase"].astype(np.int8)
     scenario = series.scenario
@@ -83,6 +91,10 @@ def labelled_result(series: Series) -> "xr.Dataset":
     }
     if has_body:
         coordinates["pose"] = list(POSE)
+    if told:
+        pairs = formation.channels.pairs[list(told)].tolist()
+        coordinates["channel"] = [f"{speaker + 1}-{listener + 1}" for listener, speaker in pairs]
+        coordinates["count"] = list(TRAFFIC)
     attributes = {
         "title": scenario.name,
         "scenario": to_yaml(scenario),

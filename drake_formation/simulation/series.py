@@ -82,6 +82,8 @@ def time_series(scenario: Scenario, choice: Choice, run: Recording, nominal: Rec
     if formation.has_body:
         pose, strain = (run.series(name)[:, 0] for name in OBJECT)
         arrays |= {"object_pose": pose, "object_strain": strain[:, 0]}
+    if formation.telling_channels:
+        arrays["traffic"] = run.series("traffic")
     return Series(arrays, scenario, choice)
 
 

@@ -25,7 +25,7 @@ def require_linear_consensus(formation: Formation) -> None:
         raise IllPosedError("robots have different consensus.delta or delta_v; what is certified is one for all")
     if not formation.channels.undirected:
         raise IllPosedError("channels go one way or weigh differently each way; what is certified goes both ways alike")
-    if any(part.kind != "ideal" for part in formation.parts["channel"]):
+    if not all(getattr(part, "is_wire", False) for part in formation.parts["channel"]):
         raise IllPosedError("channels are not ideal; what is certified are wires")
 
 

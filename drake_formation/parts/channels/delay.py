@@ -8,13 +8,14 @@ from pydantic import Field
 
 from drake_formation.config.values import NonNegative, Section
 from drake_formation.formation.formation import Formation
+from drake_formation.parts.channels.channel import Channel
 from drake_formation.parts.channels.delay_line import DelayLine
-from drake_formation.parts.part import Numbers, Part
+from drake_formation.parts.part import Numbers
 from drake_formation.parts.registry import part
 
 
 @part("channel", kind="delay")
-class Delay(Part):
+class Delay(Channel):
     """A pure delay, as in the theory of delay-differential equations; before the beginning all moved evenly."""
 
     class Config(Section):
@@ -26,6 +27,11 @@ class Delay(Part):
         pieces: int = Field(
             default=16, ge=1, le=1000, description="how many pieces of the past are kept, a cubic in each; chosen: 16"
         )
+
+    @property
+    def is_wire(self) -> bool:
+        """Whether there is no delay."""
+        return bool(self.config.delay == 0)
 
     @property
     def _span(self) -> float:

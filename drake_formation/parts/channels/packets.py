@@ -11,10 +11,11 @@ from drake_formation.config.errors import Fault, shown
 from drake_formation.config.values import NonNegative, Positive, Section
 from drake_formation.formation.formation import Formation
 from drake_formation.parts.channels import packet_law as law
+from drake_formation.parts.channels.channel import Channel
 from drake_formation.parts.channels.packet_channel import PacketChannel
 from drake_formation.parts.channels.profiles import PROFILES, Profile
 from drake_formation.parts.channels.trace_file import Trace
-from drake_formation.parts.part import Numbers, Part
+from drake_formation.parts.part import Numbers
 from drake_formation.parts.registry import part
 from drake_formation.systems.random_stream import random_start
 
@@ -35,7 +36,7 @@ LARGEST_QUEUE = 1024
 
 
 @part("channel", kind="packets")
-class Packets(Part):
+class Packets(Channel):
     """Packets with delays of their own, which may be lost; the receiver looks at times for what has arrived."""
 
     class Config(Section):
@@ -108,6 +109,11 @@ class Packets(Part):
     def is_wire(self) -> bool:
         """Whether it is a channel as in the paper."""
         return bool(self.config.profile == "ideal")
+
+    @property
+    def tells_traffic(self) -> bool:
+        """Whether there are packets."""
+        return not self.is_wire
 
     @property
     def listens(self) -> bool:

@@ -22,6 +22,12 @@ Array = NDArray[np.float64]
 DENSE = 60
 """Size of the map up to which it is written out; larger ones are left to Arnoldi's method."""
 
+TRIED = 30
+"""Covariances tried in order to bound the radius on the same side of 1."""
+
+ROUNDER = 1e-6
+"""So much of the identity keeps them positive definite."""
+
 
 def mean_square_gain(loop: SampledLoop, arrival: ArrayLike) -> float:
     """The loop gain of the packet loss: mean-square stable exactly if it is below 1.
@@ -46,6 +52,33 @@ def mean_square_gain(loop: SampledLoop, arrival: ArrayLike) -> float:
         operator = LinearOperator((response.size, response.size), response, dtype=float)
         values = eigs(operator, k=1, v0=response.identities(), return_eigenvectors=False)
     return float(np.abs(values).max(initial=0.0))
+
+
+def decays_in_mean_square(loop: SampledLoop, arrival: ArrayLike) -> bool:
+    """Whether the second moment decays, which takes a few Stein equations to tell except where it hardly does.
+
+    The map keeps covariances positive semi-definite: where it takes positive definite ones to smaller ones its spectral
+    radius is below 1, and where to larger ones above (Collatz and Wielandt).
+
+    Args:
+        loop: the sampled loop.
+        arrival: as for :func:`mean_square_gain`, whose sign about 1 this is.
+    """
+    arrivals = np.broadcast_to(np.asarray(arrival, dtype=float), loop.place.shape)
+    mean = loop.mean(arrivals)
+    if np.abs(np.linalg.eigvals(mean)).max() >= 1:
+        return False
+    if not len(loop.place):
+        return True
+    response = _CovarianceResponse(loop, mean, arrivals * (1 - arrivals))
+    covariances = response.identities()
+    for _ in range(TRIED):
+        after = response(covariances)
+        factors = response.growth(covariances, after)
+        if factors.max() < 1 or factors.min() > 1:
+            return bool(factors.max() < 1)
+        covariances = after / np.abs(after).max() + ROUNDER * response.identities()
+    return mean_square_gain(loop, arrivals) < 1
 
 
 class _CovarianceResponse:
@@ -75,17 +108,28 @@ class _CovarianceResponse:
         """The identity as covariance at every place."""
         return np.tile((self._rows == self._columns).astype(float), len(self._into))
 
+    def matrices(self, covariances: Array) -> Array:
+        """The covariances themselves, shape (places, m, m)."""
+        triangles = covariances.reshape(len(self._into), -1)
+        result = np.zeros((len(self._into), *2 * self._into.shape[2:]))
+        result[:, self._rows, self._columns] = result[:, self._columns, self._rows] = triangles
+        return result
+
+    def growth(self, before: Array, after: Array) -> Array:
+        """Between which factors covariances, positive definite before, have grown at every place, shape (places, m)."""
+        from scipy.linalg import eigvalsh
+
+        pairs = zip(self.matrices(after), self.matrices(before), strict=True)
+        return np.array([eigvalsh(now, then) for now, then in pairs])
+
     def __call__(self, covariances: Array) -> Array:
         """The upper triangles of the covariances at every place, to the same."""
         from scipy.linalg.lapack import dtrsyl
 
-        triangles = covariances.reshape(len(self._into), -1)
-        entering = np.zeros((len(self._into), *2 * self._into.shape[2:]))
-        entering[:, self._rows, self._columns] = entering[:, self._columns, self._rows] = triangles
-        source = np.hstack(list(self._into @ entering)) @ np.hstack(list(self._into)).T
+        source = np.hstack(list(self._into @ self.matrices(covariances))) @ np.hstack(list(self._into)).T
         solution, scale, _ = dtrsyl(self._triangular, self._triangular, -2 * source, tranb="T")
         ahead = (self._out.reshape(-1, len(solution)) @ solution / scale).reshape(self._out.shape)
         sent = ahead @ self._out.transpose(0, 2, 1)
-        collected = np.zeros_like(triangles)
+        collected = np.zeros((len(self._into), len(self._rows)))
         np.add.at(collected, self._place, sent[:, self._rows, self._columns])
         return collected.ravel()

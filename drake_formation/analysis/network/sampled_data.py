@@ -52,7 +52,9 @@ class SampledLoop:
         arrivals = np.broadcast_to(np.asarray(arrival, dtype=float), self.place.shape)
         per_place = np.zeros((len(self.into), *self.out.shape[1:]))
         np.add.at(per_place, self.place, arrivals[:, None, None] * self.out)
-        result: Array = self.base + np.hstack(list(self.into)) @ np.vstack(list(per_place))
+        places, size, each = self.into.shape
+        entering = self.into.transpose(1, 0, 2).reshape(size, places * each)
+        result: Array = self.base + entering @ per_place.reshape(places * each, size)
         return result
 
 

@@ -241,6 +241,10 @@ def _talk(
         _require_ports(ROLES["channel"], part, block)
         builder.AddNamedSystem(channel_name(i, j), block)
         builder.Connect(state, block.GetInputPort("sent"))
+        if "own" in _input_names(block):
+            builder.Connect(robots[i].GetOutputPort("state"), block.GetInputPort("own"))
+        if block.HasOutputPort("traffic"):
+            builder.ExportOutput(block.GetOutputPort("traffic"), f"{channel_name(i, j)}_traffic")
         if "phase" in _input_names(block):
             builder.Connect(phase.get_output_port(), block.GetInputPort("phase"))
         builder.Connect(block.GetOutputPort("received"), heard)

@@ -4,14 +4,14 @@ from collections import defaultdict
 from collections.abc import Iterable
 from typing import Any
 
-from pydrake.systems.framework import Diagram, DiagramBuilder, System
-from pydrake.systems.primitives import Adder, ConstantVectorSource
+from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort, System
+from pydrake.systems.primitives import Adder, ConstantVectorSource, Gain
 
 from drake_formation.formation.formation import Formation
 from drake_formation.parameters import Parameters, block_parameters, channel_name, robot_name, structure
 from drake_formation.parts.part import Part
 from drake_formation.parts.registry import PartError
-from drake_formation.parts.roles import CONTROLLERS, ROLES, Role
+from drake_formation.parts.roles import CONTROLLERS, ROLES, STATE, WIRES, Role
 from drake_formation.scenario import Scenario, resolve
 from drake_formation.systems.consensus_error import ConsensusError
 from drake_formation.systems.hand_off import HandOff
@@ -32,6 +32,9 @@ ROBOT_OUTPUTS = (
 ACCELERATION = "acceleration"
 """An output port of such robots as do not move as the forces on them by their mass say."""
 
+DEMANDED, MEASURED = "demanded_force", "measured"
+"""Output ports of such robots as have a computer or actuators, and sensors, that are no wires."""
+
 OBJECT_OUTPUTS = ("pose", "strain")
 """Output ports of the carried object, where it is a body of its own, after ``object_``."""
 
@@ -47,10 +50,13 @@ def build_diagram(scenario: Scenario) -> Diagram:
     :func:`drake_formation.analysis.at_rest` gives a scenario that starts where its diagram can be linearized. Output
     ports, for every robot i from 1: ``robot_i_state`` (m, m/s), ``robot_i_tracking_error`` x − x_r (m, m/s),
     ``robot_i_consensus_error`` (m), and in newtons ``robot_i_tracking_force`` u_l, ``robot_i_consensus_force`` u_g,
-    ``robot_i_avoidance_force``, ``robot_i_control_force`` (the sum of the three) and ``robot_i_spring_force``; of
-    robots that are no free masses ``robot_i_acceleration`` (m/s²); of an object that is a body of its own
-    ``object_pose`` (x, y, heading and their rates; m, rad) and ``object_strain``; and ``phase`` (0 aggregation, 1
-    transport).
+    ``robot_i_avoidance_force``, ``robot_i_control_force`` (what the actuators exert of the sum of the three: all of it
+    where they are ideal) and ``robot_i_spring_force``; of robots whose computer or actuators are no wires
+    ``robot_i_demanded_force`` (what is asked of the actuators: the sum of the three, or what a computer holds of it);
+    of robots whose sensors are no wires ``robot_i_measured`` (what they take for their state and send; ``state`` and
+    ``tracking_error`` are the true ones); of robots that are no free masses ``robot_i_acceleration`` (m/s²); of an
+    object that is a body of its own ``object_pose`` (x, y, heading and their rates; m, rad) and ``object_strain``; and
+    ``phase`` (0 aggregation, 1 transport).
 
     Args:
         scenario: what to build.
@@ -89,8 +95,8 @@ def wired(formation: Formation) -> Diagram:
     if any("sensed" in _input_names(robot) for robot in robots):
         _sense_nearest(builder, robots, parameters)
     for i, robot in enumerate(robots):
-        for output in (*ROBOT_OUTPUTS, ACCELERATION):
-            if output != ACCELERATION or robot.HasOutputPort(output):
+        for output in (*ROBOT_OUTPUTS, ACCELERATION, DEMANDED, MEASURED):
+            if output in ROBOT_OUTPUTS or robot.HasOutputPort(output):
                 builder.ExportOutput(robot.GetOutputPort(output), f"{robot_name(i)}_{output}")
     _observe_consensus(builder, robots, parameters)
     builder.ExportOutput(phase.get_output_port(), "phase")
@@ -101,7 +107,7 @@ def wired(formation: Formation) -> Diagram:
 
 
 def robot_diagram(formation: Formation, robot: int) -> Diagram:
-    """Build one robot: its plant and its three controllers (paper, Fig. 3).
+    """Build one robot: its plant and its three controllers (paper, Fig. 3), its sensors, computer and actuators.
 
     Args:
         formation: the robot's.
@@ -109,48 +115,81 @@ def robot_diagram(formation: Formation, robot: int) -> Diagram:
 
     Returns:
         The robot, with the input ports that its blocks ask for, of ``phase``, ``reference``, ``spring_j``,
-        ``load``, ``channel_j`` and ``sensed``, and the output ports named in ``ROBOT_OUTPUTS``, and ``ACCELERATION``
-        where its plant has it.
+        ``load``, ``channel_j`` and ``sensed``, and the output ports named in ``ROBOT_OUTPUTS``; ``ACCELERATION``
+        where its plant has it, ``DEMANDED`` and ``MEASURED`` where its parts are no wires.
 
     Raises:
         PartError: a part has not the ports that its role asks for.
     """
-    parameters = block_parameters(formation)
+    parameters, path = block_parameters(formation), robot_name(robot)
     builder = DiagramBuilder()
-    plant = _added(builder, "robot", formation, robot, parameters, f"{robot_name(robot)}/plant")
+    plant = _added(builder, "robot", formation, robot, parameters, f"{path}/plant")
     controllers = [
-        _added(builder, role, formation, robot, parameters, f"{robot_name(robot)}/{ROLES[role].block}")
-        for role in CONTROLLERS
+        _added(builder, role, formation, robot, parameters, f"{path}/{ROLES[role].block}") for role in CONTROLLERS
     ]
     control = builder.AddNamedSystem("control", Adder(len(controllers), 2))
+    sensor, computer, actuator = (
+        _added_unless_wire(builder, role, formation, robot, parameters, f"{path}/{role}") for role in WIRES
+    )
+    state, total = plant.GetOutputPort("state"), control.get_output_port()
+    demanded = computer.GetOutputPort("demanded") if computer else total
+    applied = actuator.GetOutputPort("force") if actuator else demanded
+    measured = sensor.GetOutputPort("measured") if sensor else state
+    sources = {
+        "true_state": state, "state": measured, "spring_force": plant.GetOutputPort("spring_force"),
+        "asked": total, "demanded": demanded, "applied": applied, "force": applied,
+    }  # fmt: skip
 
     asked: dict[str, list[System]] = defaultdict(list)
-    for block in (plant, *controllers):
+    for block in (plant, *controllers, *filter(None, (sensor, computer, actuator))):
         for name in _input_names(block):
             asked[name].append(block)
     for k, controller in enumerate(controllers):
         builder.Connect(controller.GetOutputPort("force"), control.get_input_port(k))
         builder.ExportOutput(controller.GetOutputPort("force"), f"{controller.get_name()}_force")
-    for name in ("state", "spring_force"):
-        for block in asked.pop(name, ()):
-            builder.Connect(plant.GetOutputPort(name), block.GetInputPort(name))
     if filters := asked.pop("nominal", ()):
         _connect_nominal(builder, [block for block in controllers if block not in filters], filters)
-    for block in asked.pop("force", ()):
-        builder.Connect(control.get_output_port(), block.GetInputPort("force"))
+    for name, source in sources.items():
+        for block in asked.pop(name, ()):
+            builder.Connect(source, block.GetInputPort(name))
+    _export_inputs(builder, asked)
+    error = controllers[0].GetOutputPort("error")
+    told = {
+        "state": state,
+        "spring_force": sources["spring_force"],
+        "tracking_error": _true_error(builder, error, state, measured) if sensor else error,
+        "control_force": applied,
+    }
+    if plant.HasOutputPort(ACCELERATION):
+        told[ACCELERATION] = plant.GetOutputPort(ACCELERATION)
+    if computer or actuator:
+        told[DEMANDED] = demanded
+    if sensor:
+        told[MEASURED] = measured
+    for name, port in told.items():
+        builder.ExportOutput(port, name)
+    return builder.Build()
+
+
+def _export_inputs(builder: DiagramBuilder, asked: dict[str, list[System]]) -> None:
+    """Make inputs of the diagram of what blocks ask for by the names of their ports, one a name."""
     for name in sorted(asked, key=_port_order):
         for block in asked[name]:
             if block is asked[name][0]:
                 builder.ExportInput(block.GetInputPort(name), name)
             else:
                 builder.ConnectInput(name, block.GetInputPort(name))
-    builder.ExportOutput(plant.GetOutputPort("state"), "state")
-    builder.ExportOutput(plant.GetOutputPort("spring_force"), "spring_force")
-    builder.ExportOutput(controllers[0].GetOutputPort("error"), "tracking_error")
-    builder.ExportOutput(control.get_output_port(), "control_force")
-    if plant.HasOutputPort(ACCELERATION):
-        builder.ExportOutput(plant.GetOutputPort(ACCELERATION), ACCELERATION)
-    return builder.Build()
+
+
+def _true_error(builder: DiagramBuilder, error: OutputPort, state: OutputPort, measured: OutputPort) -> OutputPort:
+    """The tracking error that a robot has, from the one that it takes itself to have: ε + x − x̂."""
+    minus = builder.AddNamedSystem("minus_measured", Gain(-1.0, STATE))
+    true = builder.AddNamedSystem("tracking_error", Adder(3, STATE))
+    builder.Connect(measured, minus.get_input_port())
+    for k, term in enumerate((error, state, minus.get_output_port())):
+        builder.Connect(term, true.get_input_port(k))
+    port: OutputPort = true.get_output_port()
+    return port
 
 
 def _connect_nominal(builder: DiagramBuilder, others: list[System], filters: Iterable[System]) -> None:
@@ -166,10 +205,20 @@ def _added(
     builder: DiagramBuilder, role: str, formation: Formation, owner: int, parameters: Parameters, path: str
 ) -> System:
     """The block of a part, added under the last name of its path; its ports are those of its role."""
+    block = _added_unless_wire(builder, role, formation, owner, parameters, path)
+    if block is None:
+        raise PartError(f"{formation.parts[role][owner].called()}: it has no block")
+    return block
+
+
+def _added_unless_wire(
+    builder: DiagramBuilder, role: str, formation: Formation, owner: int, parameters: Parameters, path: str
+) -> System | None:
+    """The same, or None where the part is a wire."""
     part: Part = formation.parts[role][owner]
     block = part.block(formation, owner, parameters.get(path, ()))
     if block is None:
-        raise PartError(f"{part.called()}: it has no block")
+        return None
     _require_ports(ROLES[role], part, block)
     return builder.AddNamedSystem(path.rsplit("/", maxsplit=1)[-1], block)
 
@@ -232,17 +281,16 @@ def _talk(
         name = f"channel_{j + 1}"
         if name not in asked[i]:
             continue
-        state, heard = robots[j].GetOutputPort("state"), robots[i].GetInputPort(name)
-        part: Part = formation.parts["channel"][k]
-        block = part.block(formation, k, parameters.get(channel_name(i, j), ()))
+        said = robots[j].GetOutputPort(MEASURED if robots[j].HasOutputPort(MEASURED) else "state")
+        heard = robots[i].GetInputPort(name)
+        block = _added_unless_wire(builder, "channel", formation, k, parameters, channel_name(i, j))
         if block is None:
-            builder.Connect(state, heard)
+            builder.Connect(said, heard)
             continue
-        _require_ports(ROLES["channel"], part, block)
-        builder.AddNamedSystem(channel_name(i, j), block)
-        builder.Connect(state, block.GetInputPort("sent"))
+        builder.Connect(said, block.GetInputPort("sent"))
         if "own" in _input_names(block):
-            builder.Connect(robots[i].GetOutputPort("state"), block.GetInputPort("own"))
+            own = robots[i].GetOutputPort(MEASURED if robots[i].HasOutputPort(MEASURED) else "state")
+            builder.Connect(own, block.GetInputPort("own"))
         if block.HasOutputPort("traffic"):
             builder.ExportOutput(block.GetOutputPort("traffic"), f"{channel_name(i, j)}_traffic")
         if "phase" in _input_names(block):

@@ -96,7 +96,7 @@ def set_parameters(diagram: Diagram, context: Context, scenario: Scenario) -> No
 def write_parameters(diagram: Diagram, context: Context, parameters: Parameters) -> None:
     """Write numbers into a Context of a diagram that is known to have their blocks."""
     for path, values in parameters.items():
-        if not _asked_for(diagram, path):
+        if not has_block(diagram, path):
             continue
         block_context = find_block(diagram, path).GetMyMutableContextFromRoot(context)
         for index, value in enumerate(values):
@@ -107,7 +107,7 @@ def write_start(diagram: Diagram, context: Context, formation: Formation) -> Non
     """Write the state in which a formation starts into a Context that holds the diagram's defaults."""
     for path, part, owner in placed_parts(formation):
         state, memory = part.initial_state(formation, owner), part.initial_discrete_state(formation, owner)
-        if (state is None and memory is None) or not _asked_for(diagram, path):
+        if (state is None and memory is None) or not has_block(diagram, path):
             continue
         own = find_block(diagram, path).GetMyMutableContextFromRoot(context)
         if state is not None:
@@ -116,9 +116,12 @@ def write_start(diagram: Diagram, context: Context, formation: Formation) -> Non
             own.SetDiscreteState(group, values)
 
 
-def _asked_for(diagram: Diagram, path: str) -> bool:
-    """Whether a block is in a diagram, which leaves out channels nobody listens to and sensing nobody uses."""
-    return bool(diagram.HasSubsystemNamed(path.split("/", maxsplit=1)[0]))
+def has_block(diagram: Diagram, path: str) -> bool:
+    """Whether there is a block at a path: wires have none, nor have channels nobody hears and sensing nobody uses."""
+    outer, _, inner = path.partition("/")
+    if not diagram.HasSubsystemNamed(outer):
+        return False
+    return not inner or has_block(diagram.GetSubsystemByName(outer), inner)
 
 
 def find_block(diagram: Diagram, path: str) -> Any:

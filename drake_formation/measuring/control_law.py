@@ -7,12 +7,15 @@ from numpy.typing import NDArray
 
 from drake_formation.formation.formation import Formation
 from drake_formation.parameters import block_parameters, robot_name
+from drake_formation.parts.actuators.ideal import IdealActuator
 from drake_formation.parts.avoidance.khatib import Khatib, avoidance_force
+from drake_formation.parts.computers.continuous import ContinuousComputer
 from drake_formation.parts.coordination.consensus import LAWS, Consensus
 from drake_formation.parts.part import Part
 from drake_formation.parts.references.set_point import SetPointReference
 from drake_formation.parts.references.trajectory import Motion as MovingReference
 from drake_formation.parts.references.trajectory import polynomial_motion
+from drake_formation.parts.sensors.ideal import IdealSensor
 from drake_formation.parts.tracking.lqr import Lqr, feed_forward_force, tracking_force
 from drake_formation.systems.sensing import nearest
 
@@ -25,6 +28,9 @@ KNOWN: dict[str, tuple[type[Part], ...]] = {
     "coordination": (Consensus,),
     "avoidance": (Khatib,),
     "reference": (SetPointReference, MovingReference),
+    "sensor": (IdealSensor,),
+    "computer": (ContinuousComputer,),
+    "actuator": (IdealActuator,),
 }
 """The parts whose laws are here; all are functions of time and the robots' states alone."""
 
@@ -33,12 +39,13 @@ def control_law(formation: Formation, times: Array, recorded: Array) -> Law:
     """The control u of every robot during transport (paper, Eq. 8), as a function of time and state.
 
     Where a robot has parts of other kinds, which may have states of their own, or where robots remember
-    what they sense or keep away from each other, it is read off what was recorded.
+    what they sense or keep away from each other, it is read off what was recorded: on the straight line between two
+    samples.
 
     Args:
         formation: what ran.
         times: when it was recorded (s), shape (m,).
-        recorded: the control forces then (N), shape (m, N, 2).
+        recorded: the control forces that acted on the robots then (N), shape (m, N, 2).
     """
     known = all(isinstance(part, kinds) for role, kinds in KNOWN.items() for part in formation.parts[role])
     wired = all(getattr(channel, "is_wire", False) for channel in formation.parts["channel"])

@@ -35,7 +35,7 @@ class Port:
 
 
 PHASE = Port("phase", 1, "0 aggregation, 1 transport")
-OWN_STATE = Port("state", STATE, "the robot's state [q; v] (m, m/s)")
+OWN_STATE = Port("state", STATE, "the robot's state [q; v], as it takes it to be (m, m/s)")
 REFERENCE = Port("reference", 6, "motion of the formation centre [p; ṗ; p̈] (m, m/s, m/s²)")
 SENSED = Port("sensed", None, "for each obstacle 1 where no robot is nearer to it, else 0")
 HEARD = Port("channel_j", STATE, "the state that robot j sends, for every robot heard (m, m/s)")
@@ -44,6 +44,8 @@ LOAD = Port("load", 2, "what an object that is a body of its own exerts on the r
 FORCE = Port("force", 2, "control force (N)", required=True)
 NOMINAL = Port("nominal", 2, "sum of the forces of the robot's controllers that do not ask for it (N)")
 OBJECT = Port("spring_force", 2, "what the object exerts on the robot (N)")
+DEMANDED = Port("demanded", 2, "force asked of the robot's actuators (N)")
+APPLIED = Port("applied", 2, "force that the robot's actuators exert (N)")
 KNOWN = (OWN_STATE, REFERENCE, PHASE, HEARD, SENSED)
 """What any controller may ask for."""
 
@@ -96,11 +98,38 @@ ROLES: dict[str, Role] = {
             "tracking",
             "lqr",
             "robot",
-            KNOWN,
+            (*KNOWN, DEMANDED, APPLIED),
             (FORCE, Port("error", STATE, "tracking error x − x_r (m, m/s)", required=True)),
         ),
         Role("coordination", ("consensus",), "consensus", "consensus", "robot", KNOWN, (FORCE,)),
         Role("avoidance", ("avoidance",), "avoidance", "khatib", "robot", (*KNOWN, NOMINAL, OBJECT), (FORCE,)),
+        Role(
+            "sensor",
+            ("sensor",),
+            "sensor",
+            "ideal",
+            "robot",
+            (Port("true_state", STATE, "the robot's state [q; v], as it is (m, m/s)"), DEMANDED),
+            (Port("measured", STATE, "what the robot takes for its state (m, m/s)", required=True),),
+        ),
+        Role(
+            "computer",
+            ("computer",),
+            "computer",
+            "continuous",
+            "robot",
+            (Port("asked", 2, "sum of the forces of the robot's controllers (N)", required=True),),
+            (Port("demanded", 2, "force asked of the robot's actuators (N)", required=True),),
+        ),
+        Role(
+            "actuator",
+            ("actuator",),
+            "actuator",
+            "ideal",
+            "robot",
+            (Port("demanded", 2, "force asked of the robot's actuators (N)", required=True),),
+            (Port("force", 2, "force that they exert (N)", required=True),),
+        ),
         Role(
             "reference",
             ("transport", "reference"),
@@ -141,7 +170,10 @@ ROLES: dict[str, Role] = {
         ),
     )
 }
-"""By name. A robot's controllers are the roles with an output ``force``."""
+"""By name."""
 
 CONTROLLERS = ("tracking", "coordination", "avoidance")
 """Roles whose forces on a robot add up to its control, in this order."""
+
+WIRES = ("sensor", "computer", "actuator")
+"""Roles of a robot whose parts need no block: what would enter it then goes on as it is."""

@@ -244,6 +244,18 @@ class Scenario(Section):
     avoidance: Annotated[Any, PartOf("avoidance", Avoidance)] = Field(
         default_factory=PartOf("avoidance", Avoidance).default, description="obstacles, and what robots do about them"
     )
+    sensor: Annotated[Any, PartOf("sensor")] = Field(
+        default_factory=PartOf("sensor").default,
+        description="how robots know their own states, which they also send; paper: ideal",
+    )
+    computer: Annotated[Any, PartOf("computer")] = Field(
+        default_factory=PartOf("computer").default,
+        description="when robots work out their control forces; paper: continuously",
+    )
+    actuator: Annotated[Any, PartOf("actuator")] = Field(
+        default_factory=PartOf("actuator").default,
+        description="what robots exert of the control forces asked of them; paper: ideal",
+    )
     aggregation: Aggregation = Aggregation()
     transport: Transport
     seed: int = Field(

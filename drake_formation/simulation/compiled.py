@@ -182,6 +182,10 @@ class CompiledRecording:
             self._known[port].setflags(write=False)
         return self._known[port]
 
+    def has(self, port: str) -> bool:
+        """Whether a port is recorded."""
+        return port in self._ports
+
     def accelerations(self) -> dict[int, Array]:
         """Acceleration of each robot that has such a port (m/s²), from 0, each of shape (samples, 2)."""
         return {robot: self.series(ACCELERATION)[:, k] for k, robot in enumerate(self._telling)}

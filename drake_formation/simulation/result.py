@@ -29,7 +29,7 @@ VARIABLES = {
     "tracking_force": (VECTOR, "N", "local control u_l (Eq. 10)"),
     "consensus_force": (VECTOR, "N", "global control u_g (Eq. 15)"),
     "avoidance_force": (VECTOR, "N", "obstacle avoidance"),
-    "control_force": (VECTOR, "N", "control u, the sum of the three (Eq. 8)"),
+    "control_force": (VECTOR, "N", "control u that acts on a robot, the sum of the three (Eq. 8) unless limited"),
     "spring_force": (VECTOR, "N", "what the object exerts on a robot"),
     "spring_length": (("time", "spring"), "m", "length d of a spring"),
     "rest_length": (("spring",), "m", "length r of a spring at rest"),
@@ -44,16 +44,16 @@ VARIABLES = {
 """Dimensions, unit and meaning of each variable."""
 
 POSE = ("x", "y", "heading", "x_rate", "y_rate", "heading_rate")
-OBJECT_VARIABLES = {
+SOMETIMES = {
+    "demanded_force": (VECTOR, "N", "control asked of a robot's actuators, which exert control_force"),
+    "measured_position": (VECTOR, "m", "position that a robot takes for its own"),
+    "measured_velocity": (VECTOR, "m/s", "velocity that a robot takes for its own"),
     "object_pose": (("time", "pose"), "m, m, rad, m/s, m/s, rad/s", "place and heading of the object and their rates"),
     "object_strain": (("time",), "1", "strain of the object"),
-}
-"""Those there are where the object is a body of its own."""
-
-TRAFFIC_VARIABLES = {
     "traffic": (("time", "channel", "count"), "1, and s", "packets so far, and when the one in use was sent"),
 }
-"""Those there are where channels carry packets."""
+"""Those there are where the computer or actuators of a robot, or its sensors, are no wires, where the object is a
+body of its own, and where channels carry packets."""
 
 
 def labelled_result(series: Series) -> "xr.Dataset":
@@ -64,20 +64,23 @@ def labelled_result(series: Series) -> "xr.Dataset":
 
     Returns:
         A dataset over ``time`` (every step of the integrator), ``robot`` (from 1), ``axis`` (x, y), ``spring``
-        (``1-2``) and ``obstacle`` (from 1); an object that is a body of its own has ``object_pose`` over ``pose``, and
-        ``object_strain``, as its kind says; channels that carry packets have ``traffic`` over ``channel`` (what robot 2
-        tells robot 1 is ``2-1``) and ``count``. ``deviation`` is NaN before the hand-off. A sample
-        at the hand-off shows what is so from then on. Between samples the motion is the quintic with position,
-        velocity and acceleration at both ends; :func:`drake_formation.measuring.metrics` measures that. The attribute
-        ``remark`` says what to know about the run, if there is anything.
+        (``1-2``) and ``obstacle`` (from 1). ``control_force`` is what acts on the robots; where the computer or the
+        actuators of any are no wires, ``demanded_force`` is what is asked of the actuators. Where sensors are none,
+        ``measured_position`` and ``measured_velocity`` are what robots take for their own and send; all else is true.
+        An object that is a body of its own has ``object_pose`` over ``pose``, and ``object_strain``, as its kind says.
+        Channels that carry packets have ``traffic`` over ``channel`` (what robot 2 tells robot 1 is ``2-1``) and
+        ``count``.
+        ``deviation`` is NaN before the hand-off. A sample at the hand-off shows what is so from then on. Between
+        samples the motion is the quintic with position, velocity and acceleration at both ends;
+        :func:`drake_formation.measuring.metrics` measures that. The attribute ``remark`` says what to know about the
+        run, if there is anything.
     """
     import xarray as xr  # slow to import, and not needed to build a diagram
 
-    has_body, told = resolve(series.scenario).has_body, resolve(series.scenario).telling_channels
-    named = VARIABLES | (OBJECT_VARIABLES if has_body else {}) | (TRAFFIC_VARIABLES if told else {})
     variables = {
         name: xr.Variable(dimensions, series[name], {"units": units, "long_name": meaning})
-        for name, (dimensions, units, meaning) in named.items()
+        for name, (dimensions, units, meaning) in (VARIABLES | SOMETIMES).items()
+        if name in VARIABLES or name in series
     }
     variables["phase"] = variables["phase"].astype(np.int8)
     scenario = series.scenario
@@ -89,10 +92,10 @@ def labelled_result(series: Series) -> "xr.Dataset":
         "spring": [f"{i + 1}-{j + 1}" for i, j in formation.springs.pairs.tolist()],
         "obstacle": np.arange(1, len(series["obstacle_radius"]) + 1),
     }
-    if has_body:
+    if "object_pose" in series:
         coordinates["pose"] = list(POSE)
-    if told:
-        pairs = formation.channels.pairs[list(told)].tolist()
+    if "traffic" in series:
+        pairs = formation.channels.pairs[list(formation.telling_channels)].tolist()
         coordinates["channel"] = [f"{speaker + 1}-{listener + 1}" for listener, speaker in pairs]
         coordinates["count"] = list(TRAFFIC)
     attributes = {

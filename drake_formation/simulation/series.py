@@ -6,6 +6,7 @@ from functools import reduce
 import numpy as np
 from numpy.typing import NDArray
 
+from drake_formation.diagram import DEMANDED, MEASURED
 from drake_formation.scenario import Scenario, resolve
 from drake_formation.simulation.choice import Choice
 from drake_formation.simulation.motion import Motion
@@ -68,7 +69,7 @@ def time_series(scenario: Scenario, choice: Choice, run: Recording, nominal: Rec
         "deviation_acceleration": deviation.acceleration,
         "consensus_error": consensus_errors(position, slots),
         **forces,
-        "control_force": reduce(np.add, forces.values()),
+        "control_force": applied_force(run),
         "spring_force": run.series("spring_force"),
         "spring_length": lengths,
         "rest_length": formation.rest_lengths,
@@ -79,6 +80,11 @@ def time_series(scenario: Scenario, choice: Choice, run: Recording, nominal: Rec
         "obstacle_position": obstacles[:, :2],
         "obstacle_radius": obstacles[:, 2],
     }
+    if run.has(DEMANDED):
+        arrays["demanded_force"] = run.series(DEMANDED)
+    if run.has(MEASURED):
+        measured = run.series(MEASURED)
+        arrays |= {"measured_position": measured[..., :2], "measured_velocity": measured[..., 2:]}
     if formation.has_body:
         pose, strain = (run.series(name)[:, 0] for name in OBJECT)
         arrays |= {"object_pose": pose, "object_strain": strain[:, 0]}
@@ -87,11 +93,18 @@ def time_series(scenario: Scenario, choice: Choice, run: Recording, nominal: Rec
     return Series(arrays, scenario, choice)
 
 
+def applied_force(run: Recording) -> Array:
+    """What the robots' actuators exert (N): all that their controllers ask for, unless something is between."""
+    if run.has("control_force"):
+        return run.series("control_force")
+    return reduce(np.add, (run.series(name) for name in FORCES))
+
+
 def recorded_motion(scenario: Scenario, run: Recording) -> Motion:
     """The motion of the robots; where they do not tell their acceleration, it is the forces on them by their mass."""
     state = run.series("state")
     position, velocity = state[..., :2], state[..., 2:]
-    forces = reduce(np.add, (run.series(name) for name in (*FORCES, "spring_force")))
+    forces = applied_force(run) + run.series("spring_force")
     acceleration = forces / resolve(scenario).masses[:, None]
     for robot, told in run.accelerations().items():
         acceleration[:, robot] = told

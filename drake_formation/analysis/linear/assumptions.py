@@ -4,8 +4,10 @@ import numpy as np
 
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.formation.formation import Formation
+from drake_formation.parts.actuators.motor import MAX_FORCE, MotorActuator
 from drake_formation.parts.coordination.consensus import Consensus
 from drake_formation.parts.robots.point_mass import PointMass
+from drake_formation.parts.roles import ROLES, WIRES
 from drake_formation.parts.tracking.lqr import Lqr
 
 
@@ -53,6 +55,22 @@ def require_free_masses(formation: Formation) -> None:
             raise IllPosedError(f"robot {i + 1} is a {part.kind!r}; what is certified are robots of kind 'point_mass'")
         if part.config.drag:
             raise IllPosedError(f"robot {i + 1} has a drag; what is certified has none")
+
+
+def require_wires(formation: Formation) -> None:
+    """Robots that know their states, work out their forces continuously, and exert them, up to a largest force.
+
+    A largest force is not reached near rest, and what lies beyond is not covered anyway.
+
+    Raises:
+        IllPosedError: a robot's sensors, computer or actuators do anything else.
+    """
+    for role in WIRES:
+        for i, part in enumerate(formation.parts[role]):
+            if part.kind == ROLES[role].default or (isinstance(part, MotorActuator) and set(part.given) <= {MAX_FORCE}):
+                continue
+            wanted = f"'{ROLES[role].default}'" + (", or with a largest force alone" if role == "actuator" else "")
+            raise IllPosedError(f"robot {i + 1} has {part.called()}; what is certified is {wanted}")
 
 
 def require_start_at_rest(formation: Formation) -> None:

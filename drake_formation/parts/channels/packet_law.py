@@ -93,7 +93,7 @@ def is_lost(state: Array, numbers: Array) -> bool:
     if numbers[LOSS] == 0.0:
         return False
     if numbers[BURST_LENGTH] <= 1.0:
-        return draw(state) < numbers[LOSS]
+        return bool(draw(state) < numbers[LOSS])
     bad = numbers[LOSS] / numbers[BURST_LOSS]
     leaves = 1.0 / numbers[BURST_LENGTH]
     chance = draw(state)
@@ -101,7 +101,7 @@ def is_lost(state: Array, numbers: Array) -> bool:
         state[BURST] = 0.0 if chance < leaves else 1.0
     else:
         state[BURST] = 1.0 if chance < leaves * bad / (1.0 - bad) else 0.0
-    return state[BURST] > 0.0 and draw(state) < numbers[BURST_LOSS]
+    return bool(state[BURST] > 0.0 and draw(state) < numbers[BURST_LOSS])
 
 
 def drawn_delay(state: Array, numbers: Array) -> float:
@@ -110,9 +110,9 @@ def drawn_delay(state: Array, numbers: Array) -> float:
     if kind == MEASURED:
         return float(numbers[SETTINGS + (int(state[FRESHLY_SENT]) - 1) % int(numbers[DELAYS])])
     if kind == UNIFORM:
-        return mean + spread * (2.0 * draw(state) - 1.0)
+        return float(mean + spread * (2.0 * draw(state) - 1.0))
     if kind == GAMMA and spread > 0.0:
-        return spread * spread / mean * gamma(state, (mean / spread) ** 2)
+        return float(spread * spread / mean * gamma(state, (mean / spread) ** 2))
     return float(mean)
 
 
@@ -143,7 +143,7 @@ def is_up(time: float, inputs: Array, state: Array, numbers: Array) -> bool:
         if numbers[start + 2 * k] <= time + ROUNDING and time + ROUNDING < numbers[start + 2 * k + 1]:
             return False
     if numbers[RANGE] > 0.0:
-        return math.hypot(inputs[0] - inputs[4], inputs[1] - inputs[5]) <= numbers[RANGE]
+        return bool(math.hypot(inputs[0] - inputs[4], inputs[1] - inputs[5]) <= numbers[RANGE])
     return True
 
 

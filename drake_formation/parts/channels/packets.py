@@ -128,7 +128,7 @@ class Packets(Channel):
         if config.delays:
             return float(max(config.delays))
         width = 15.0 if config.distribution == "gamma" else 1.0
-        return network.delay + width * network.spread * (config.distribution != "constant")
+        return float(network.delay + width * network.spread * (config.distribution != "constant"))
 
     def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:  # noqa: ARG002
         """What contradicts itself."""

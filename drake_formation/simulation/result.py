@@ -9,6 +9,7 @@ from drake_formation.scenario import resolve, to_yaml
 from drake_formation.scenario.source import parse
 from drake_formation.scenario.validate import validate
 from drake_formation.simulation.choice import Choice
+from drake_formation.simulation.events import found_events, labelled_events
 from drake_formation.simulation.obstacles import chattering
 from drake_formation.simulation.series import Series
 
@@ -62,7 +63,8 @@ def labelled_result(series: Series) -> "xr.Dataset":
         ``object_strain``, as its kind says. ``deviation`` is NaN before the hand-off. A sample
         at the hand-off shows what is so from then on. Between samples the motion is the quintic with position,
         velocity and acceleration at both ends; :func:`drake_formation.measuring.metrics` measures that. The attribute
-        ``remark`` says what to know about the run, if there is anything.
+        ``remark`` says what to know about the run, if there is anything. What happened at one moment is in
+        ``event_place``; see :func:`drake_formation.simulation.events.events`.
     """
     import xarray as xr  # slow to import, and not needed to build a diagram
 
@@ -83,6 +85,7 @@ def labelled_result(series: Series) -> "xr.Dataset":
     }
     if has_body:
         coordinates["pose"] = list(POSE)
+    happened, when = labelled_events(found_events(series))
     attributes = {
         "title": scenario.name,
         "scenario": to_yaml(scenario),
@@ -96,7 +99,7 @@ def labelled_result(series: Series) -> "xr.Dataset":
         attributes["engine_reason"] = series.choice.reason
     if remark := chattering(scenario, series["clearance"][series["phase"] == 1]):
         attributes["remark"] = remark
-    return xr.Dataset(variables, coordinates, attributes)
+    return xr.Dataset(variables | happened, coordinates | when, attributes)
 
 
 def series_of(result: "xr.Dataset") -> Series:

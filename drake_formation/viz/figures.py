@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from drake_formation.vectors import length
+from drake_formation.viz.events import draw_events, mark_events
 from drake_formation.viz.style import draw_each
 
 SNAPSHOTS = 7
@@ -33,6 +34,7 @@ def paths(result: xr.Dataset) -> Figure:
         axes.plot(x[:1], y[:1], "s", color=colour, markersize=4.5)
         axes.plot(x[carried], y[carried], color=colour, linewidth=1.4, label=f"robot {robot}")
     draw_obstacles(axes, result)
+    draw_events(axes, result)
     for time in snapshot_times(result):
         draw_formation(axes, result.sel(time=time))
     axes.set(xlabel="x (m)", ylabel="y (m)", title=_title(result, "paths"))
@@ -165,8 +167,9 @@ def _draw_history(axes: Axes, result: xr.Dataset, series: xr.DataArray) -> None:
 
 
 def _mark_transport(axes: Axes, result: xr.Dataset, only: bool = False) -> None:
-    """Grid, and where the object is carried."""
+    """Grid, what happened, and where the object is carried."""
     axes.grid(alpha=0.3)
+    mark_events(axes, result)
     times, carried = result["time"].values, result["phase"].values == 1
     if carried.sum() < 2:  # a run that ended at its hand-off has no transport to show
         return

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.formation.links import Channels, Edges
+from drake_formation.formation.stages import Signals, Stage, signals
 
 Array = NDArray[np.float64]
 
@@ -37,6 +38,8 @@ class Formation:
         law: the part by whose law the object's springs act.
         parts: the parts of every role: one a robot, one an edge for ``spring``, one a channel for ``channel``, and one
             in all for ``reference`` and ``object``.
+        stages: what failures of robots make of it, in order of time, the first from the beginning; none where no robot
+            fails.
     """
 
     name: str
@@ -52,6 +55,7 @@ class Formation:
     transport_duration: float
     law: type[Any]
     parts: Mapping[str, tuple[Any, ...]]
+    stages: tuple[Stage, ...] = ()
 
     def __post_init__(self) -> None:
         for array in (self.slots, self.starts, self.centre, self.goal, self.obstacles):
@@ -76,6 +80,11 @@ class Formation:
     def end(self) -> float:
         """When the scenario ends (s)."""
         return self.hand_off + self.transport_duration
+
+    @cached_property
+    def signals(self) -> Signals:
+        """What blocks are told of the stages; see :func:`drake_formation.formation.stages.signals`."""
+        return signals(self.stages, self.slots, self.springs, self.channels) if self.stages else {}
 
     @property
     def has_body(self) -> bool:

@@ -35,7 +35,7 @@ def control_law(formation: Formation, times: Array, recorded: Array) -> Law:
     """The control u of every robot during transport (paper, Eq. 8), as a function of time and state.
 
     Where a robot has parts of other kinds, which may have states of their own, or where robots remember
-    what they sense or keep away from each other, it is read off what was recorded.
+    what they sense or keep away from each other, or fail, it is read off what was recorded.
 
     Args:
         formation: what ran.
@@ -43,7 +43,11 @@ def control_law(formation: Formation, times: Array, recorded: Array) -> Law:
         recorded: the control forces then (N), shape (m, N, 2).
     """
     known = all(isinstance(part, kinds) for role, kinds in KNOWN.items() for part in formation.parts[role])
-    if known and not any(part.margin or part.config.robots for part in formation.parts["avoidance"]):
+    if (
+        known
+        and not formation.stages
+        and not any(part.margin or part.config.robots for part in formation.parts["avoidance"])
+    ):
         return ControlLaw(formation)
 
     def between(at: Array, position: Array, _velocity: Array) -> Array:

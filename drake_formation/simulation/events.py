@@ -1,17 +1,16 @@
 """What happened in a run at one moment and place, such as the hand-off."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drake_formation.simulation.series import Series
-
 if TYPE_CHECKING:
     import xarray as xr
 
 HAND_OFF = "hand_off"
+"""The kind of event that every run with an aggregation has."""
 
 
 @dataclass(frozen=True)
@@ -39,34 +38,6 @@ class Event:
     def to_dict(self) -> dict[str, Any]:
         """The event as JSON takes it."""
         return asdict(self)
-
-
-Finder = Callable[[Series], Iterator[Event]]
-"""What finds the events of one kind in a run."""
-
-
-def hand_offs(series: Series) -> Iterator[Event]:
-    """The hand-off, at the centre of the robots, where a run got there and began before it."""
-    carried = np.flatnonzero(series["phase"] == 1)
-    if not len(carried) or carried[0] == 0:
-        return
-    place = series["position"][carried[0]].mean(axis=0)
-    robots = tuple(range(1, len(series["slot"]) + 1))
-    time = float(series["time"][carried[0]])
-    yield Event(HAND_OFF, time, (float(place[0]), float(place[1])), robots, "the object is placed on the robots")
-
-
-FINDERS: tuple[Finder, ...] = (hand_offs,)
-"""All there are; each looks for one kind."""
-
-
-def found_events(series: Series) -> tuple[Event, ...]:
-    """Everything that happened in a run, in order of time.
-
-    Args:
-        series: what came out of it.
-    """
-    return tuple(sorted((event for finder in FINDERS for event in finder(series)), key=lambda event: event.time))
 
 
 def labelled_events(events: Sequence[Event]) -> "tuple[dict[str, xr.Variable], dict[str, Any]]":

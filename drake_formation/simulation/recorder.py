@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from pydrake.systems.framework import Context, Diagram, EventStatus
 
 from drake_formation.diagram import ACCELERATION, OBJECT_OUTPUTS
+from drake_formation.failing import BROKEN_OUTPUTS, DRIVEN
 from drake_formation.parameters import robot_name
 
 Array = NDArray[np.float64]
@@ -36,7 +37,7 @@ class Recording(Protocol):
         """0 during aggregation, 1 during transport; shape (samples,)."""
 
     def series(self, port: str) -> Array:
-        """Values of one of the ports ``RECORDED``, or of ``OBJECT`` with N = 1, shape (samples, N, size)."""
+        """Values of one of the ports ``RECORDED``, shape (samples, N, size); N = 1 for those of the whole."""
 
     def accelerations(self) -> dict[int, Array]:
         """Acceleration of each robot that has such a port (m/s²), from 0, each of shape (samples, 2)."""
@@ -53,7 +54,7 @@ def recorded_ports(diagram: Diagram, robots: int) -> dict[str, list[str]]:
     ports = {name: [f"{robot_name(i)}_{name}" for i in range(robots)] for name in RECORDED}
     if told := telling(diagram, robots):
         ports[ACCELERATION] = list(told.values())
-    return ports | {name: [name] for name in OBJECT if diagram.HasOutputPort(name)}
+    return ports | {name: [name] for name in (*OBJECT, DRIVEN, *BROKEN_OUTPUTS) if diagram.HasOutputPort(name)}
 
 
 class Recorder:

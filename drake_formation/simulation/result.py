@@ -9,7 +9,8 @@ from drake_formation.scenario import resolve, to_yaml
 from drake_formation.scenario.source import parse
 from drake_formation.scenario.validate import validate
 from drake_formation.simulation.choice import Choice
-from drake_formation.simulation.events import found_events, labelled_events
+from drake_formation.simulation.events import labelled_events
+from drake_formation.simulation.happened import found_events
 from drake_formation.simulation.obstacles import chattering
 from drake_formation.simulation.series import Series
 
@@ -50,6 +51,15 @@ OBJECT_VARIABLES = {
 }
 """Those there are where the object is a body of its own."""
 
+FAILING_VARIABLES = {
+    "driven": (("time", "robot"), "1", "1 while the drives of a robot work, else 0"),
+    "acting": (("time", "spring"), "1", "1 while a spring holds its robots, else 0"),
+    "grip_acting": (("time", "robot"), "1", "1 while the grip of a robot holds, else 0"),
+    "broken_at": (("spring",), "s", "when a spring broke"),
+    "grip_broken_at": (("robot",), "s", "when the grip of a robot broke"),
+}
+"""Those there may be where something fails or breaks; NaN stands for never."""
+
 
 def labelled_result(series: Series) -> "xr.Dataset":
     """Label what came out of a run.
@@ -71,7 +81,8 @@ def labelled_result(series: Series) -> "xr.Dataset":
     has_body = resolve(series.scenario).has_body
     variables = {
         name: xr.Variable(dimensions, series[name], {"units": units, "long_name": meaning})
-        for name, (dimensions, units, meaning) in (VARIABLES | (OBJECT_VARIABLES if has_body else {})).items()
+        for name, (dimensions, units, meaning) in (VARIABLES | OBJECT_VARIABLES | FAILING_VARIABLES).items()
+        if name in series
     }
     variables["phase"] = variables["phase"].astype(np.int8)
     scenario = series.scenario

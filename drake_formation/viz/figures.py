@@ -71,7 +71,8 @@ def consensus_error(result: xr.Dataset) -> Figure:
 
 def spring_lengths(result: xr.Dataset) -> Figure:
     """Elongation of every spring (paper, Fig. 10, relative to the length at rest)."""
-    elongation = (result["spring_length"] - result["rest_length"]).where(result["phase"] == 1) * 100
+    acting = result["acting"] == 1 if "acting" in result else True
+    elongation = (result["spring_length"] - result["rest_length"]).where((result["phase"] == 1) & acting) * 100
     figure = Figure(figsize=(8, 4), layout="constrained")
     axes = figure.subplots()
     many = result.sizes["spring"] > 10
@@ -209,8 +210,9 @@ def draw_obstacles(axes: Axes, result: xr.Dataset) -> None:
 
 
 def draw_formation(axes: Axes, moment: xr.Dataset) -> None:
-    """Draw robots and springs in the plane at one time of a result."""
-    for spring in moment["spring"].values:
+    """Draw robots, and the springs that hold them, in the plane at one time of a result."""
+    acting = moment["spring"].values[moment["acting"].values == 1] if "acting" in moment else moment["spring"].values
+    for spring in acting:
         ends = [int(robot) for robot in str(spring).split("-")]
         x, y = moment["position"].sel(robot=ends).values.T
         axes.plot(x, y, color=SPRING_COLOUR, linewidth=0.8, zorder=1)

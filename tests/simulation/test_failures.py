@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from carrying import carried
 
 from drake_formation import build_diagram, load_scenario, metrics, simulate
 from drake_formation.analysis import at_rest, linearize
@@ -117,14 +118,44 @@ def test_without_an_object_they_are_in_the_slots_of_the_triangle_until_the_fourt
     lost = {"robot": 2, "time": 2.0, "kind": "stops_actuating", "response": "re_form", "repaired_at": 30.0}
     scenario = failing(lost, name="quadrilateral", **SQUARE)
     result = simulate(scenario, engine="blocks")
-    slots = smaller_slots(scenario, {1})
-    before = result["position"].sel(time=slice(None, 30.0)).values[-1]
-    np.testing.assert_allclose(before[[0, 2, 3]], np.add(slots, [3.0, 3.5])[[0, 2, 3]], atol=1e-3)
-    sides = before[[0, 2, 3]] - before[[2, 3, 0]]
-    np.testing.assert_allclose(np.linalg.norm(sides, axis=1), 1.0, atol=2e-3)
-    assert metrics(result).peak_force_n > 0
+    slots, left = smaller_slots(scenario, {1}), [0, 2, 3]
+    before = result.sel(time=slice(None, 30.0 - 1e-7)).isel(time=-1)
+    position = before["position"].values[left]
+    np.testing.assert_allclose(position, np.add(slots, [3.0, 3.5])[left], atol=1e-3)
+    np.testing.assert_allclose(np.linalg.norm(position - np.roll(position, 1, axis=0), axis=1), 1.0, atol=2e-3)
+    assert np.abs(before["tracking_error"].values[left]).max() < 1e-3, "against the slots that they have"
+    assert np.linalg.norm(before["consensus_error"].values, axis=1).max() > 0.1, "against those as planned"
+    then = result.sel(time=slice(30.0, None)).isel(time=0)
+    assert np.abs(then["tracking_error"].values[left]).max() > 0.1, "they go back once it is repaired"
     kinds = [event.kind for event in events(result)]
     assert sorted(kinds) == ["failure", "repair", "response"]
+
+
+@pytest.mark.parametrize("strength", ["", ", grip_strength: 1e6, look_every: 0.05"])
+def test_a_grip_that_is_let_go_exerts_nothing_until_it_holds_again(strength):
+    failures = "[{robot: 1, time: 0.5, kind: drops_load, repaired_at: 1.0}]"
+    scenario = carried(f"{{kind: rigid{strength}}}", failures=failures, aggregation="{duration: 0.2}")
+    result = simulate(scenario, engine="blocks")
+    time, force = result["time"].values, np.linalg.norm(result["spring_force"].sel(robot=1), axis=1)
+    dropped = (time >= 0.5) & (time < 1.0)
+    assert (force[dropped] == 0).all()
+    assert (force[(time > 0.3) & ~dropped] > 0).all()
+    assert result["grip_acting"].sel(robot=1).values.tolist() == (~dropped).tolist()
+    assert (result["grip_acting"].sel(robot=[2, 3, 4]).values == 1).all()
+    assert float(np.linalg.norm(result["spring_force"].sel(robot=2, time=time[dropped]), axis=1).min()) > 0
+
+
+def test_engines_carry_out_the_same_failures():
+    lost = {"robot": 2, "time": 1.0, "kind": "freezes", "response": "re_form", "repaired_at": 2.0, "notice_after": 0.1}
+    coupled = {"springs.graph": "complete", "springs.stiffness": 20.0, "springs.break_at_strain": 0.2}
+    more = SQUARE | coupled | {"transport.duration": 4.0, "object": {"kind": "springs", "look_every": 0.05}}
+    scenario = failing(lost, name="quadrilateral", **more)
+    first, *others = (simulate(scenario, engine=engine) for engine in ("blocks", "compiled", "exponential"))
+    assert {"failure", "response", "repair"} <= {event.kind for event in events(first)}
+    for other in others:
+        np.testing.assert_allclose(other["position"].values[-1], first["position"].values[-1], atol=1e-6)
+        told = [[(event.time, event.who, event.kind) for event in events(result)] for result in (first, other)]
+        assert told[0] == told[1]
 
 
 def test_a_failure_is_felt_from_its_very_time_on():

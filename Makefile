@@ -54,6 +54,8 @@ diagrams: $(VENV)/installed
 	done
 	$(BIN)/drake-formation run line --out out/line
 	cp out/line/figures/paths.png diagrams/line-paths.png
+	$(BIN)/drake-formation run robot-failure --out out/robot-failure
+	cp out/robot-failure/figures/paths.png diagrams/robot-failure.png
 	$(BIN)/drake-formation reproduce --only fig11 --out out/paper
 	cp out/paper/figures/fig11.png diagrams/paper-fig11.png
 	$(BIN)/drake-formation sweep gains --out out/gains

@@ -106,9 +106,14 @@ def write_parameters(diagram: Diagram, context: Context, parameters: Parameters)
 def write_start(diagram: Diagram, context: Context, formation: Formation) -> None:
     """Write the state in which a formation starts into a Context that holds the diagram's defaults."""
     for path, part, owner in placed_parts(formation):
-        state = part.initial_state(formation, owner)
-        if state is not None and has_block(diagram, path):
-            find_block(diagram, path).GetMyMutableContextFromRoot(context).SetContinuousState(state)
+        state, memory = part.initial_state(formation, owner), part.initial_discrete_state(formation, owner)
+        if (state is None and memory is None) or not has_block(diagram, path):
+            continue
+        own = find_block(diagram, path).GetMyMutableContextFromRoot(context)
+        if state is not None:
+            own.SetContinuousState(state)
+        for group, values in enumerate(memory or ()):
+            own.SetDiscreteState(group, values)
 
 
 def has_block(diagram: Diagram, path: str) -> bool:

@@ -37,6 +37,7 @@ class Formation:
         law: the part by whose law the object's springs act.
         parts: the parts of every role: one a robot, one an edge for ``spring``, one a channel for ``channel``, and one
             in all for ``reference`` and ``object``.
+        seed: of all that is random in it.
     """
 
     name: str
@@ -52,6 +53,7 @@ class Formation:
     transport_duration: float
     law: type[Any]
     parts: Mapping[str, tuple[Any, ...]]
+    seed: int = 0
 
     def __post_init__(self) -> None:
         for array in (self.slots, self.starts, self.centre, self.goal, self.obstacles):

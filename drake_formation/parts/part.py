@@ -106,6 +106,10 @@ class Part:
         """The block's continuous state at the start; None where its default is right for every scenario."""
         return None
 
+    def initial_discrete_state(self, formation: Formation, owner: int) -> Numbers | None:  # noqa: ARG002
+        """The block's discrete state at the start, one array a group; None where its default is right for all."""
+        return None
+
 
 class RestNumbers(Section):
     """Where a spring is at rest, if not between its robots in their slots; at most one of the two may be given."""

@@ -127,6 +127,7 @@ def _formation(
         aggregation_duration=scenario.aggregation.duration,
         transport_duration=scenario.transport.duration,
         law=kinds("spring")[scenario.springs.law],
+        seed=scenario.seed,
         parts=parts,
     )
 

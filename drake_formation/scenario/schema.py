@@ -255,6 +255,12 @@ class Scenario(Section):
     )
     aggregation: Aggregation = Aggregation()
     transport: Transport
+    seed: int = Field(
+        default=0,
+        ge=0,
+        description="of all that is random in the scenario; every part draws from a stream of its own, named by its "
+        "place in the diagram; chosen: 0",
+    )
     simulator: Simulation = Simulation()
 
     @model_serializer(mode="wrap")

@@ -281,16 +281,25 @@ def _talk(
         name = f"channel_{j + 1}"
         if name not in asked[i]:
             continue
-        said = robots[j].GetOutputPort(MEASURED if robots[j].HasOutputPort(MEASURED) else "state")
-        heard = robots[i].GetInputPort(name)
+        said, heard = _believed(robots[j]), robots[i].GetInputPort(name)
         block = _added_unless_wire(builder, "channel", formation, k, parameters, channel_name(i, j))
         if block is None:
             builder.Connect(said, heard)
             continue
         builder.Connect(said, block.GetInputPort("sent"))
+        if "own" in _input_names(block):
+            builder.Connect(_believed(robots[i]), block.GetInputPort("own"))
+        if block.HasOutputPort("traffic"):
+            builder.ExportOutput(block.GetOutputPort("traffic"), f"{channel_name(i, j)}_traffic")
         if "phase" in _input_names(block):
             builder.Connect(phase.get_output_port(), block.GetInputPort("phase"))
         builder.Connect(block.GetOutputPort("received"), heard)
+
+
+def _believed(robot: Diagram) -> OutputPort:
+    """What a robot takes for its state, and sends."""
+    port: OutputPort = robot.GetOutputPort(MEASURED if robot.HasOutputPort(MEASURED) else "state")
+    return port
 
 
 def _sense_nearest(builder: DiagramBuilder, robots: list[Diagram], parameters: Parameters) -> None:

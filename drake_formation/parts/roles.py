@@ -8,6 +8,10 @@ STATE = 4
 """Numbers that robots tell each other: position q (m) and velocity v (m/s), in the world frame."""
 
 
+TRAFFIC = 6
+"""Numbers that a channel of packets tells of itself."""
+
+
 @dataclass(frozen=True)
 class Port:
     """A port by which the diagram knows a part.
@@ -154,8 +158,17 @@ ROLES: dict[str, Role] = {
             "channel",
             "ideal",
             "channel",
-            (Port("sent", STATE, "the state of the robot that speaks (m, m/s)", required=True), PHASE),
-            (Port("received", STATE, "what the listening robot takes for it (m, m/s)", required=True),),
+            (
+                Port("sent", STATE, "the state of the robot that speaks (m, m/s)", required=True),
+                Port("own", STATE, "the state of the robot that listens (m, m/s)"),
+                PHASE,
+            ),
+            (
+                Port("received", STATE, "what the listening robot takes for it (m, m/s)", required=True),
+                Port(
+                    "traffic", TRAFFIC, "packets sent, lost, delivered, overtaken, late, and when the last was sent (s)"
+                ),
+            ),
         ),
     )
 }

@@ -154,9 +154,9 @@ class PreparedRun:
         run = self._start(scenario, context, progress and (lambda time: progress(time - begin)))
         try:
             run.advance(hand_off)
+            at_hand_off = run.context.Clone() if felt_obstacles(formation) else None
             # Carry out the hand-off now, so that the first sample of the transport has its forces.
             run.carry_out_updates()
-            at_hand_off = run.context.Clone() if felt_obstacles(formation) else None
             run.advance(end)
         except _FAILURES as failure:
             if felt_obstacles(formation) and len(run.recording.times):
@@ -175,6 +175,7 @@ class PreparedRun:
             scenario, at_hand_off, progress and (lambda time: progress(end - begin + time - hand_off))
         )
         try:
+            nominal.carry_out_updates()
             nominal.advance(end)
         except _FAILURES as failure:
             raise self._simulation_error(

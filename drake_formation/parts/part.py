@@ -90,6 +90,11 @@ class Part:
         """What of the formation, beyond its graphs, a new block is needed for when it changes; nothing by default."""
         return ()
 
+    def ticks(self) -> tuple[tuple[float, float], ...]:
+        """Period and offset (s) of the updates at which what it gives may jump; those of a field ``period``, if any."""
+        period = getattr(self.config, "period", None)
+        return () if period is None else ((float(period), 0.0),)
+
     def block(self, formation: Formation, owner: int, numbers: Numbers) -> System | None:
         """The block in double; it converts to AutoDiffXd and Expression.
 

@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.formation.formation import Formation
+from drake_formation.parts.actuators.motor import MotorActuator
 from drake_formation.parts.objects.carried import CarriedObject
+from drake_formation.parts.part import Part
 from drake_formation.parts.tracking.lqr import Lqr, lqr_gain
 from drake_formation.scenario import Scenario, ScenarioError, resolve
 from drake_formation.simulation.phases import felt_obstacles
@@ -87,7 +89,8 @@ def steps(scenario: Scenario, duration: float, *, carrying: bool) -> float:
     fastest = float(np.sqrt(stiffness))
     accurate = ACCURATE * (settings.accuracy / 1e-6) ** 0.2
     ringing = min(duration, FADED / damping) if damping else duration
-    fewest = max(1 / settings.max_step_size, max(fastest, damping) / STABLE)
+    updates = sum(1 / period for period, _ in resolve(scenario).ticks)
+    fewest = max(1 / settings.max_step_size, max(fastest, damping) / STABLE, updates)
     return float(duration * fewest + ringing * fastest / accurate)
 
 
@@ -109,9 +112,15 @@ def _largest_rates(formation: Formation, carrying: bool) -> tuple[float, float]:
     if carrying:
         stiffness += 2 * _sums(formation, "stiffness")
         damping += 2 * _sums(formation, "damping")
+    followed = [1 / part.given["time_constant"] for part in formation.parts["actuator"] if _follows(part)]
     (carried,) = formation.parts["object"]
     body = carried.fastest(formation) if carrying and isinstance(carried, CarriedObject) else (0.0, 0.0)
-    return float((stiffness / masses).max()) + body[0], float((damping / masses).max()) + body[1]
+    return float((stiffness / masses).max()) + body[0], max([float((damping / masses).max()) + body[1], *followed])
+
+
+def _follows(part: Part) -> bool:
+    """Whether actuators follow with a time constant."""
+    return isinstance(part, MotorActuator) and part.is_smooth
 
 
 def _each(formation: Formation, role: str, name: str) -> Array:

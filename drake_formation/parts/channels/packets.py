@@ -183,6 +183,10 @@ class Packets(Part):
         """How often the receiver looks, and when first (s)."""
         return self.network.period / self.config.looks, self.config.phase
 
+    def ticks(self) -> tuple[tuple[float, float], ...]:
+        """When the receiver looks."""
+        return () if self.is_wire else (self.timing,)
+
     def structure(self) -> Hashable:
         """What its block is made of."""
         if self.is_wire:

@@ -311,8 +311,9 @@ def _talk(
 
 
 def _believed(robot: Diagram) -> OutputPort:
-    """What a robot takes for its own state, and sends."""
-    return robot.GetOutputPort(MEASURED if robot.HasOutputPort(MEASURED) else "state")
+    """What a robot takes for its state, and sends."""
+    port: OutputPort = robot.GetOutputPort(MEASURED if robot.HasOutputPort(MEASURED) else "state")
+    return port
 
 
 def _sense_nearest(builder: DiagramBuilder, robots: list[Diagram], parameters: Parameters) -> None:

@@ -13,6 +13,9 @@ from drake_formation.formation.stages import Signals, Stage, signals
 
 Array = NDArray[np.float64]
 
+ROUNDING = 1e-9
+"""Share of a number of periods that rounding may make of a whole number."""
+
 SPRINGS = "springs"
 """The kind of object that has no block: springs between robots, which their plants carry out."""
 
@@ -135,6 +138,19 @@ class Formation:
     def at_rest_in_slots(self) -> bool:
         """Whether the object's springs are all at rest where the robots are in their slots."""
         return bool((self.elongations == 1.0).all())
+
+    @cached_property
+    def ticks(self) -> frozenset[tuple[float, float]]:
+        """Period and offset (s) of the updates of all parts."""
+        return frozenset(tick for parts in self.parts.values() for part in set(parts) for tick in part.ticks())
+
+    def is_updated(self, times: Array) -> NDArray[np.bool_]:
+        """Whether a part is updated at some times (s), of the same shape."""
+        result = np.zeros(np.shape(times), dtype=bool)
+        for period, offset in self.ticks:
+            periods = (np.asarray(times) - offset) / period
+            result |= (np.abs(periods - np.round(periods)) < ROUNDING * np.maximum(1.0, periods)) & (periods > -0.5)
+        return result
 
     def displacements(self, robot: int, others: tuple[int, ...]) -> Array:
         """Desired displacement h_i − h_j of a robot from some others (m), shape (others, 2)."""

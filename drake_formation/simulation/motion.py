@@ -27,13 +27,16 @@ class Motion:
         times: sample times (s), rising, shape (samples,).
         position: (m), shape (samples, points, 2).
         velocity: (m/s), of the same shape.
-        acceleration: (m/s²), of the same shape; where it jumps, the value from there on.
+        acceleration: (m/s²), of the same shape; where it jumps, the value from there on, unless ``leaving`` is given.
+        leaving: acceleration with which every step begins (m/s²), shape (samples − 1, points, 2), where it jumps at
+            samples that show the value until then.
     """
 
     times: Array
     position: Array
     velocity: Array
     acceleration: Array
+    leaving: Array | None = None
 
     def at(self, step: Indices, share: Array) -> tuple[Array, Array, Array]:
         """Position, velocity and acceleration of all points within steps.
@@ -77,8 +80,8 @@ class Motion:
         """Of the quintics over the share of a step, in rising powers (m), each of shape (m, points, 2)."""
         after = slice(1, None) if isinstance(step, slice) else step + 1
         length = np.diff(self.times)[step][:, None, None]
-        position = self.position[step]
-        slope, curvature = length * self.velocity[step], length**2 * self.acceleration[step]
+        position, leaving = self.position[step], self.acceleration if self.leaving is None else self.leaving
+        slope, curvature = length * self.velocity[step], length**2 * leaving[step]
         # What the parabola that leaves as the quintic does lacks at the end; what rounding leaves of it is no motion,
         # though over a step of a picosecond it would be a great speed.
         way = self.position[after] - position - slope - 0.5 * curvature

@@ -5,6 +5,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from drake_formation.vectors import length
 from drake_formation.viz.events import draw_events
@@ -16,6 +17,8 @@ from drake_formation.viz.figures import (
     robot_colours,
     snapshot_times,
 )
+
+Array = NDArray[np.float64]
 
 FRESHEST, OLDEST = 1e-3, 10.0
 """Ages of information (s) between which colours tell apart."""
@@ -81,11 +84,12 @@ def _draw_error(axes: Axes, result: xr.Dataset) -> None:
     mark_transport(axes, result, only=True)
 
 
-def ages(result: xr.Dataset, times: np.ndarray) -> np.ndarray:
+def ages(result: xr.Dataset, times: Array) -> Array:
     """How old what is known over each channel is (s), shape (channels, times)."""
     known = result["traffic"].sel(count="sent_at").values
     later = np.minimum(np.searchsorted(result["time"].values, times), len(known) - 1)
-    return (times[:, None] - known[later]).T
+    found: Array = (times[:, None] - known[later]).T
+    return found
 
 
 def _draw_ages(figure: Figure, axes: Axes, result: xr.Dataset) -> None:

@@ -11,6 +11,7 @@ from drake_formation.parts.actuators.motor import Motor
 from drake_formation.parts.avoidance.barrier import BarrierFilter
 from drake_formation.parts.avoidance.khatib import ObstacleAvoidance
 from drake_formation.parts.avoidance.rotational import rotational_force
+from drake_formation.parts.computers.sampled import DelayedHold
 from drake_formation.parts.coordination.consensus import ConsensusController
 from drake_formation.parts.objects.breaking import Breaking, SpringsBear
 from drake_formation.parts.references.set_point import SetPoint
@@ -18,6 +19,8 @@ from drake_formation.parts.robots.omnidirectional import Omnidirectional
 from drake_formation.parts.robots.plant import PlanarRobot
 from drake_formation.parts.robots.point_mass import RobotPlant, dragged_mass
 from drake_formation.parts.robots.unicycle import Unicycle
+from drake_formation.parts.sensors.kalman import KalmanSensor
+from drake_formation.parts.sensors.noisy import BiasedSensor, NoisySensor
 from drake_formation.parts.springs.hookean import Hookean
 from drake_formation.parts.springs.linear import Linear
 from drake_formation.parts.tracking.controller import TrackingController
@@ -63,6 +66,10 @@ MAKERS = {
     ),
     "motors at once": lambda: Motor(("dead_zone", "max_force"), [0.1, 0.3]),
     "slow motors": lambda: Motor(("dead_zone", "max_force", "time_constant", "max_rate"), [0.1, 0.3, 0.2, 0.5]),
+    "biased sensor": lambda: BiasedSensor([0.1, 0.2, 0.3, 0.4]),
+    "noisy sensor": lambda: NoisySensor(0.1, [0.1, 0.2, 0.3], [0.1, 0.2, 0.3, 0.4], np.ones(4), np.arange(1.0, 11.0)),
+    "Kalman filter": lambda: KalmanSensor(0.1, True, [0.1, 40.0, 0.3, 0.4], np.ones(4), [0.0], np.arange(1.0, 5.0)),
+    "delayed hold": lambda: DelayedHold(0.1, 0.0, 2),
     "consensus": lambda: ConsensusController([2, 5], [100.0, 7.0], [[1.0, 0.0], [0.0, -1.0]]),
     "consensus without channels": lambda: ConsensusController([], [100.0, 7.0], np.zeros((0, 2))),
     "avoidance": lambda: ObstacleAvoidance([2.0, 30.0], OBSTACLES),
@@ -96,7 +103,10 @@ SILENT = {
 }  # fmt: skip
 """Outputs and the inputs that do not reach them at once. All others do, in every block."""
 
-REMEMBERED = {("force", "demanded"), ("force", "applied"), ("error", "demanded"), ("error", "applied")}
+REMEMBERED = {
+    ("force", "demanded"), ("force", "applied"), ("error", "demanded"), ("error", "applied"),
+    ("measured", "true"), ("measured", "demanded"), ("demanded", "asked"),
+}  # fmt: skip
 """Likewise of blocks with a state that they change."""
 
 
@@ -114,7 +124,8 @@ def outputs(block):
 
 
 def test_inputs_reach_exactly_the_outputs_that_depend_on_them(block):
-    silent = SILENT | (REMEMBERED if block.num_continuous_states() else set())
+    states = block.num_continuous_states() + block.num_discrete_state_groups()
+    silent = SILENT | (REMEMBERED if states else set())
     for given in inputs(block):
         for output in outputs(block):
             names = output.get_name(), given.get_name().split("_")[0]

@@ -10,7 +10,6 @@ from rich.table import Table
 from rich.text import Text
 
 from drake_formation.analysis.certificate import Certificate
-from drake_formation.analysis.linear.linearization import NOT_COVERED
 from drake_formation.analysis.linear.motion_subspaces import PARTS
 from drake_formation.analysis.stability.local_lqr import GUARANTEED_GAIN, GUARANTEED_PHASE_DEG
 from drake_formation.analysis.stability.modes import Mode
@@ -31,6 +30,15 @@ def report(certificate: Certificate) -> RenderableType:
 
 
 def _verdict(certificate: Certificate) -> Iterator[RenderableType]:
+    if certificate.channels is not None:
+        label, reason = certificate.channels.label, certificate.channels.reason
+        style = {"stable": "bold green", "unstable": "bold red"}.get(label, "bold yellow")
+        yield Text.assemble((f"over its channels: {label}. ", style), f"{reason[0].upper()}{reason[1:]}.")
+        yield Text("All that follows is for the same formation with wires for channels.")
+    yield from _verdict_over_wires(certificate)
+
+
+def _verdict_over_wires(certificate: Certificate) -> Iterator[RenderableType]:
     modes = certificate.modes
     if modes.stable:
         slowest = modes.slowest
@@ -216,8 +224,8 @@ def _unanswered(certificate: Certificate) -> Iterator[RenderableType]:
         yield Text(f"{_LABELS.get(name, name)}: {reason}")
 
 
-def _not_covered(_: Certificate) -> Iterator[RenderableType]:
-    yield from (Text(f"- {line}") for line in NOT_COVERED)
+def _not_covered(certificate: Certificate) -> Iterator[RenderableType]:
+    yield from (Text(f"- {line}") for line in certificate.not_covered)
 
 
 _BLOCKS: dict[str, Callable[[Certificate], Iterator[RenderableType]]] = {
@@ -235,6 +243,7 @@ _BLOCKS: dict[str, Callable[[Certificate], Iterator[RenderableType]]] = {
 }
 
 _LABELS = {
+    "channels": "channels",
     "local": "local loop",
     "springs": "carried object",
     "smallest_delta": "smallest δ",

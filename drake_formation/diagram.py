@@ -1,4 +1,7 @@
-"""A scenario as a Drake diagram: the only place that wires blocks (paper, Figs. 2 and 3)."""
+"""A scenario as a Drake diagram: where blocks are wired (paper, Figs. 2 and 3).
+
+What breaks and fails is wired in :mod:`drake_formation.failing`.
+"""
 
 from collections import defaultdict
 from collections.abc import Iterable
@@ -7,6 +10,7 @@ from typing import Any
 from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort, System
 from pydrake.systems.primitives import Adder, ConstantVectorSource, Gain
 
+from drake_formation.failing import Failing
 from drake_formation.formation.formation import Formation
 from drake_formation.parameters import Parameters, block_parameters, channel_name, robot_name, structure
 from drake_formation.parts.part import Part
@@ -38,7 +42,7 @@ DEMANDED, MEASURED = "demanded_force", "measured"
 OBJECT_OUTPUTS = ("pose", "strain")
 """Output ports of the carried object, where it is a body of its own, after ``object_``."""
 
-PORT_ORDER = ("phase", "reference", "spring", "load", "channel", "sensed")
+PORT_ORDER = ("phase", "reference", "spring", "load", "intact", "held", "failure", "channel", "sensed")
 """Input ports of every robot, by the stem of their names, as far as its blocks have them."""
 
 
@@ -80,18 +84,19 @@ def wired(formation: Formation) -> Diagram:
     if reference.num_input_ports():
         builder.Connect(phase.get_output_port(), reference.GetInputPort("phase"))
     robots = [builder.AddNamedSystem(robot_name(i), robot_diagram(formation, i)) for i in range(formation.robots)]
-    for robot in robots:
+    failing = Failing(builder, formation, parameters)
+    for i, robot in enumerate(robots):
         for name in _input_names(robot):
             stem, _, number = name.rpartition("_")
             if name == "phase":
                 builder.Connect(phase.get_output_port(), robot.GetInputPort(name))
             elif name == "reference":
-                builder.Connect(reference.GetOutputPort("centre"), robot.GetInputPort(name))
+                builder.Connect(failing.reference(i, reference.GetOutputPort("centre")), robot.GetInputPort(name))
             elif stem == "spring":
                 builder.Connect(robots[int(number) - 1].GetOutputPort("state"), robot.GetInputPort(name))
-    if formation.has_body:
-        _carry(builder, phase, robots, formation, parameters)
-    _talk(builder, phase, robots, formation, parameters)
+    carried = _carry(builder, phase, robots, formation, parameters) if formation.has_body else None
+    failing.fail(robots, carried)
+    _talk(builder, phase, robots, formation, parameters, failing)
     if any("sensed" in _input_names(robot) for robot in robots):
         _sense_nearest(builder, robots, parameters)
     for i, robot in enumerate(robots):
@@ -253,14 +258,16 @@ def _phase(formation: Formation) -> System:
 
 def _carry(
     builder: DiagramBuilder, phase: System, robots: list[Diagram], formation: Formation, parameters: Parameters
-) -> None:
+) -> System:
     """Wire an object that is a body of its own to the robots that hold it."""
     (part,) = formation.parts["object"]
     block = _added(builder, "object", formation, 0, parameters, "object")
     for name in _input_names(block):
         _, _, number = name.rpartition("_")
-        source = robots[int(number) - 1].GetOutputPort("state") if number.isdecimal() else phase.get_output_port()
-        builder.Connect(source, block.GetInputPort(name))
+        if number.isdecimal():
+            builder.Connect(robots[int(number) - 1].GetOutputPort("state"), block.GetInputPort(name))
+        elif name == "phase":
+            builder.Connect(phase.get_output_port(), block.GetInputPort(name))
     for i, robot in enumerate(robots):
         name, plant = f"grip_force_{i + 1}", formation.parts["robot"][i]
         if not block.HasOutputPort(name):
@@ -270,10 +277,16 @@ def _carry(
         builder.Connect(block.GetOutputPort(name), robot.GetInputPort("load"))
     for name in OBJECT_OUTPUTS:
         builder.ExportOutput(block.GetOutputPort(name), f"object_{name}")
+    return block
 
 
 def _talk(
-    builder: DiagramBuilder, phase: System, robots: list[Diagram], formation: Formation, parameters: Parameters
+    builder: DiagramBuilder,
+    phase: System,
+    robots: list[Diagram],
+    formation: Formation,
+    parameters: Parameters,
+    failing: Failing,
 ) -> None:
     """Wire every channel from the robot that speaks to the one that hears, through the channel's block if any."""
     asked = [set(_input_names(robot)) for robot in robots]
@@ -281,21 +294,25 @@ def _talk(
         name = f"channel_{j + 1}"
         if name not in asked[i]:
             continue
-        said = robots[j].GetOutputPort(MEASURED if robots[j].HasOutputPort(MEASURED) else "state")
+        own, said = (_believed(robots[k]) for k in (i, j))
         heard = robots[i].GetInputPort(name)
         block = _added_unless_wire(builder, "channel", formation, k, parameters, channel_name(i, j))
         if block is None:
-            builder.Connect(said, heard)
+            builder.Connect(failing.heard(i, j, said, own), heard)
             continue
         builder.Connect(said, block.GetInputPort("sent"))
         if "own" in _input_names(block):
-            own = robots[i].GetOutputPort(MEASURED if robots[i].HasOutputPort(MEASURED) else "state")
             builder.Connect(own, block.GetInputPort("own"))
         if block.HasOutputPort("traffic"):
             builder.ExportOutput(block.GetOutputPort("traffic"), f"{channel_name(i, j)}_traffic")
         if "phase" in _input_names(block):
             builder.Connect(phase.get_output_port(), block.GetInputPort("phase"))
-        builder.Connect(block.GetOutputPort("received"), heard)
+        builder.Connect(failing.heard(i, j, block.GetOutputPort("received"), own), heard)
+
+
+def _believed(robot: Diagram) -> OutputPort:
+    """What a robot takes for its own state, and sends."""
+    return robot.GetOutputPort(MEASURED if robot.HasOutputPort(MEASURED) else "state")
 
 
 def _sense_nearest(builder: DiagramBuilder, robots: list[Diagram], parameters: Parameters) -> None:

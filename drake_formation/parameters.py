@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pydrake.systems.framework import Context, Diagram
 
 from drake_formation.formation.formation import Formation
+from drake_formation.parts.objects.breaking import breaking_numbers, breaks, looks_every
 from drake_formation.parts.part import Part
 from drake_formation.parts.roles import ROLES
 from drake_formation.scenario import Scenario, resolve
@@ -31,6 +32,11 @@ def channel_name(listener: int, speaker: int) -> str:
     return f"channel_{speaker + 1}_to_{listener + 1}"
 
 
+def heeding_name(listener: int, speaker: int) -> str:
+    """Name of the system by which a robot drops another or follows its slot, from 0."""
+    return f"robot_{listener + 1}_heeds_{speaker + 1}"
+
+
 def placed_parts(formation: Formation) -> Iterator[tuple[str, Part, int]]:
     """Every part that may have a block: its path in the diagram, the part, and its owner."""
     for name, role in ROLES.items():
@@ -48,6 +54,7 @@ def block_parameters(formation: Formation) -> Parameters:
     """The numeric parameters of every block of a formation's diagram; worked out once for a formation."""
     if "numbers" not in formation.kept:
         result: Parameters = {"consensus_error": (formation.slots,), "sensing": _sensing(formation)}
+        result |= _failing(formation)
         for path, part, owner in placed_parts(formation):
             if groups := part.numbers(formation, owner):
                 result[path] = groups
@@ -61,6 +68,17 @@ def _sensing(formation: Formation) -> tuple[Array, ...]:
     centres = formation.obstacles[:, :2]
     margin = max(getattr(part, "margin", 0.0) for part in formation.parts["avoidance"])
     return (centres, np.array([margin])) if margin else (centres,)
+
+
+def _failing(formation: Formation) -> Parameters:
+    """The numbers of what breaks and fails, as far as it does."""
+    result: Parameters = {"breaking": breaking_numbers(formation)} if breaks(formation) else {}
+    if formation.signals:
+        result["stages"] = tuple(formation.signals.values())
+    for i, j in formation.channels.pairs.tolist():
+        if f"heard_{i + 1}_{j + 1}" in formation.signals:
+            result[heeding_name(i, j)] = (formation.slots[i] - formation.slots[j],)
+    return result
 
 
 def set_parameters(diagram: Diagram, context: Context, scenario: Scenario) -> None:
@@ -77,8 +95,8 @@ def set_parameters(diagram: Diagram, context: Context, scenario: Scenario) -> No
     Raises:
         ScenarioError: the scenario is wrong.
         ValueError: its structure differs from the diagram's (robots, graphs, kinds of parts, sensing, number of
-            obstacles, pieces of the reference, time of the hand-off); that needs a new diagram. Nothing has been
-            written then.
+            obstacles, pieces of the reference, times of the hand-off and of failures); that needs a new diagram.
+            Nothing has been written then.
     """
     formation = resolve(scenario)
     built: Any = getattr(diagram, "structure", None)
@@ -87,8 +105,8 @@ def set_parameters(diagram: Diagram, context: Context, scenario: Scenario) -> No
     if structure(formation) != built:
         raise ValueError(
             f"scenario {scenario.name!r} has another structure than the diagram {diagram.get_name()!r}: robots, "
-            "graphs, kinds of parts, sensing, number of obstacles, pieces of the reference and time of the hand-off "
-            "must be alike, or the diagram built anew"
+            "graphs, kinds of parts, sensing, number of obstacles, pieces of the reference and times of the hand-off "
+            "and of failures must be alike, or the diagram built anew"
         )
     write_parameters(diagram, context, block_parameters(formation))
 
@@ -133,7 +151,7 @@ def find_block(diagram: Diagram, path: str) -> Any:
 
 
 def structure(formation: Formation) -> dict[str, Any]:
-    """What a formation's diagram is made of: the hand-off, who hears and holds whom, and each block's kind and sizes.
+    """What a formation's diagram is made of: times, who hears and holds whom, and each block's kind and sizes.
 
     Diagrams of one structure differ in numbers alone.
     """
@@ -142,6 +160,9 @@ def structure(formation: Formation) -> dict[str, Any]:
         "springs": formation.springs.pairs.tolist(),
         "channels": formation.channels.pairs.tolist(),
         "law": _identity(formation.law),
+        "looks": (formation.hand_off, looks_every(formation)) if breaks(formation) else None,
+        "stages": [stage.time for stage in formation.stages],
+        "signals": {name: np.shape(rows) for name, rows in formation.signals.items()},
     }
     numbers = block_parameters(formation)
     for path, part, owner in placed_parts(formation):

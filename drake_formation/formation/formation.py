@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.formation.links import Channels, Edges
+from drake_formation.formation.stages import Signals, Stage, signals
 
 Array = NDArray[np.float64]
 
@@ -39,6 +40,8 @@ class Formation:
             in all for ``reference`` and ``object``.
         seed: of all that is random in it.
         tolerance: consensus error beyond which it counts as lost (m).
+        stages: what failures of robots make of it, in order of time, the first from the beginning; none where no robot
+            fails.
     """
 
     name: str
@@ -56,6 +59,7 @@ class Formation:
     parts: Mapping[str, tuple[Any, ...]]
     seed: int = 0
     tolerance: float = 0.05
+    stages: tuple[Stage, ...] = ()
 
     def __post_init__(self) -> None:
         for array in (self.slots, self.starts, self.centre, self.goal, self.obstacles):
@@ -80,6 +84,11 @@ class Formation:
     def end(self) -> float:
         """When the scenario ends (s)."""
         return self.hand_off + self.transport_duration
+
+    @cached_property
+    def signals(self) -> Signals:
+        """What blocks are told of the stages; see :func:`drake_formation.formation.stages.signals`."""
+        return signals(self.stages, self.slots, self.springs, self.channels) if self.stages else {}
 
     @property
     def has_body(self) -> bool:

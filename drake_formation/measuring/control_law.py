@@ -39,8 +39,8 @@ def control_law(formation: Formation, times: Array, recorded: Array) -> Law:
     """The control u of every robot during transport (paper, Eq. 8), as a function of time and state.
 
     Where a robot has parts of other kinds, which may have states of their own, or where robots remember
-    what they sense or keep away from each other, it is read off what was recorded: on the straight line between two
-    samples.
+    what they sense or keep away from each other, or fail, it is read off what was recorded: on the straight line
+    between two samples.
 
     Args:
         formation: what ran.
@@ -49,7 +49,8 @@ def control_law(formation: Formation, times: Array, recorded: Array) -> Law:
     """
     known = all(isinstance(part, kinds) for role, kinds in KNOWN.items() for part in formation.parts[role])
     wired = all(getattr(channel, "is_wire", False) for channel in formation.parts["channel"])
-    if known and wired and not any(part.margin or part.config.robots for part in formation.parts["avoidance"]):
+    simple = known and wired and not formation.stages
+    if simple and not any(part.margin or part.config.robots for part in formation.parts["avoidance"]):
         return ControlLaw(formation)
 
     def between(at: Array, position: Array, _velocity: Array) -> Array:

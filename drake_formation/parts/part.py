@@ -9,7 +9,7 @@ from pydantic import Field
 from pydrake.systems.framework import System
 
 from drake_formation.config.errors import Fault
-from drake_formation.config.values import Length, Section
+from drake_formation.config.values import Length, Positive, Section
 from drake_formation.formation.formation import Formation
 from drake_formation.sources import OWN
 
@@ -124,11 +124,26 @@ class RestNumbers(Section):
     )
 
 
+class BreakNumbers(Section):
+    """When a spring breaks, if it may."""
+
+    break_at_strain: Positive | None = Field(
+        default=None,
+        description="largest |d/r − 1| (1) that the spring bears: beyond it, it breaks for good; one for all or one an "
+        "edge; default: any",
+    )
+    break_at_force: Positive | None = Field(
+        default=None,
+        description="largest ‖F_ij‖ (N) that the spring bears, likewise; one for all or one an edge; default: any",
+    )
+
+
 class SpringLaw(Part):
     """The law by which the carried object couples two robots; a part without a block, for plants carry it out.
 
     The fields of its configuration are numbers of an edge, and the law's arguments in the order of their declaration;
-    those of :class:`RestNumbers`, if it has them, say where the spring is at rest instead.
+    those of :class:`RestNumbers`, if it has them, say where the spring is at rest instead, and those of
+    :class:`BreakNumbers` when it breaks.
     """
 
     role = "spring"
@@ -152,7 +167,8 @@ class SpringLaw(Part):
     @classmethod
     def arguments(cls) -> list[str]:
         """The fields that are the law's arguments, in their order."""
-        return [name for name in cls.Config.model_fields if name not in RestNumbers.model_fields]
+        others = RestNumbers.model_fields.keys() | BreakNumbers.model_fields.keys()
+        return [name for name in cls.Config.model_fields if name not in others]
 
     def numbers(self, formation: Formation, owner: int) -> Numbers:  # noqa: ARG002
         """The numbers of the edge that are the law's arguments."""

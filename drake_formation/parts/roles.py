@@ -41,6 +41,9 @@ SENSED = Port("sensed", None, "for each obstacle 1 where no robot is nearer to i
 HEARD = Port("channel_j", STATE, "the state that robot j sends, for every robot heard (m, m/s)")
 HELD = Port("spring_j", STATE, "the state of robot j, for every robot that the object couples (m, m/s)")
 LOAD = Port("load", 2, "what an object that is a body of its own exerts on the robot (N)")
+INTACT = Port("intact", None, "for each spring or grip that it has 1 until it breaks, else 0")
+HELD_ON = Port("held", None, "for each spring or grip that it has 1 while it is held, else 0")
+FAILURE = Port("failure", 3, "share of the control force it gives, 0 while it brakes or 1, and 1/τ of its brakes (1/s)")
 FORCE = Port("force", 2, "control force (N)", required=True)
 NOMINAL = Port("nominal", 2, "sum of the forces of the robot's controllers that do not ask for it (N)")
 OBJECT = Port("spring_force", 2, "what the object exerts on the robot (N)")
@@ -84,7 +87,7 @@ ROLES: dict[str, Role] = {
             "plant",
             "point_mass",
             "robot",
-            (FORCE, PHASE, HELD, LOAD),
+            (FORCE, PHASE, HELD, LOAD, INTACT, HELD_ON, FAILURE),
             (
                 Port("state", STATE, "position and velocity where it holds the object (m, m/s)", required=True),
                 Port("spring_force", 2, "what the object exerts on the robot (N)", required=True),
@@ -145,7 +148,7 @@ ROLES: dict[str, Role] = {
             "object",
             "springs",
             "formation",
-            (Port("state_j", STATE, "the state of robot j, for every robot (m, m/s)"), PHASE),
+            (Port("state_j", STATE, "the state of robot j, for every robot (m, m/s)"), PHASE, INTACT, HELD_ON),
             (
                 Port("grip_force_j", 2, "what it exerts on robot j, zero during aggregation (N)", required=True),
                 Port("pose", 6, "place of its centre, heading, and their rates (m, rad, m/s, rad/s)", required=True),

@@ -12,6 +12,7 @@ from pydantic import Discriminator, Field, SerializerFunctionWrapHandler, Tag, m
 from drake_formation.config.values import Edge, Graph, Length, NonNegative, Point, Positive, Section, TopologyName
 from drake_formation.formation.formation import SPRINGS
 from drake_formation.parts.registry import when_changed
+from drake_formation.scenario.failures import Failure
 from drake_formation.scenario.written import PartOf, rebuild_sections
 
 MOST_ROBOTS = 1000
@@ -258,6 +259,7 @@ class Scenario(Section):
     )
     aggregation: Aggregation = Aggregation()
     transport: Transport
+    failures: tuple[Failure, ...] = Field(default=(), strict=False, description="robots that fail; paper: none")
     seed: int = Field(
         default=0,
         ge=0,

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from pydrake.systems.framework import Context, Diagram, EventStatus
 
 from drake_formation.diagram import ACCELERATION, DEMANDED, MEASURED, OBJECT_OUTPUTS
+from drake_formation.failing import BROKEN_OUTPUTS, DRIVEN
 from drake_formation.parameters import robot_name
 
 Array = NDArray[np.float64]
@@ -38,7 +39,7 @@ class Recording(Protocol):
         """0 during aggregation, 1 during transport; shape (samples,)."""
 
     def series(self, port: str) -> Array:
-        """Values of a recorded port, shape (samples, N, size); N = 1 for those of ``OBJECT``."""
+        """Values of a recorded port, shape (samples, N, size); N = 1 for those of the whole."""
 
     def has(self, port: str) -> bool:
         """Whether a port is recorded; not all formations have all."""
@@ -67,7 +68,7 @@ def recorded_ports(diagram: Diagram, robots: int) -> dict[str, list[str]]:
             ports[name] = [
                 own if diagram.HasOutputPort(own) else other for own, other in zip(names, others, strict=True)
             ]
-    return ports | {name: [name] for name in OBJECT if diagram.HasOutputPort(name)}
+    return ports | {name: [name] for name in (*OBJECT, DRIVEN, *BROKEN_OUTPUTS) if diagram.HasOutputPort(name)}
 
 
 def traffic_ports(diagram: Diagram) -> list[str]:

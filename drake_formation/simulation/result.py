@@ -10,6 +10,8 @@ from drake_formation.scenario import resolve, to_yaml
 from drake_formation.scenario.source import parse
 from drake_formation.scenario.validate import validate
 from drake_formation.simulation.choice import Choice
+from drake_formation.simulation.events import labelled_events
+from drake_formation.simulation.happened import found_events
 from drake_formation.simulation.obstacles import chattering
 from drake_formation.simulation.series import Series
 
@@ -55,6 +57,15 @@ SOMETIMES = {
 """Those there are where the computer or actuators of a robot, or its sensors, are no wires, where the object is a
 body of its own, and where channels carry packets."""
 
+FAILING_VARIABLES = {
+    "driven": (("time", "robot"), "1", "1 while the drives of a robot work, else 0"),
+    "acting": (("time", "spring"), "1", "1 while a spring holds its robots, else 0"),
+    "grip_acting": (("time", "robot"), "1", "1 while the grip of a robot holds, else 0"),
+    "broken_at": (("spring",), "s", "when a spring broke"),
+    "grip_broken_at": (("robot",), "s", "when the grip of a robot broke"),
+}
+"""Those there may be where something fails or breaks; NaN stands for never."""
+
 
 def labelled_result(series: Series) -> "xr.Dataset":
     """Label what came out of a run.
@@ -73,13 +84,14 @@ def labelled_result(series: Series) -> "xr.Dataset":
         ``deviation`` is NaN before the hand-off. A sample at the hand-off shows what is so from then on. Between
         samples the motion is the quintic with position, velocity and acceleration at both ends;
         :func:`drake_formation.measuring.metrics` measures that. The attribute ``remark`` says what to know about the
-        run, if there is anything.
+        run, if there is anything. What happened at one moment is in ``event_place``; see
+        :func:`drake_formation.simulation.events.events`.
     """
     import xarray as xr  # slow to import, and not needed to build a diagram
 
     variables = {
         name: xr.Variable(dimensions, series[name], {"units": units, "long_name": meaning})
-        for name, (dimensions, units, meaning) in (VARIABLES | SOMETIMES).items()
+        for name, (dimensions, units, meaning) in (VARIABLES | SOMETIMES | FAILING_VARIABLES).items()
         if name in VARIABLES or name in series
     }
     variables["phase"] = variables["phase"].astype(np.int8)
@@ -94,6 +106,7 @@ def labelled_result(series: Series) -> "xr.Dataset":
     }
     if "object_pose" in series:
         coordinates["pose"] = list(POSE)
+    happened, when = labelled_events(found_events(series))
     if "traffic" in series:
         pairs = formation.channels.pairs[list(formation.telling_channels)].tolist()
         coordinates["channel"] = [f"{speaker + 1}-{listener + 1}" for listener, speaker in pairs]
@@ -111,7 +124,7 @@ def labelled_result(series: Series) -> "xr.Dataset":
         attributes["engine_reason"] = series.choice.reason
     if remark := chattering(scenario, series["clearance"][series["phase"] == 1]):
         attributes["remark"] = remark
-    return xr.Dataset(variables, coordinates, attributes)
+    return xr.Dataset(variables | happened, coordinates | when, attributes)
 
 
 def series_of(result: "xr.Dataset") -> Series:

@@ -7,7 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.diagram import DEMANDED, MEASURED
+from drake_formation.failing import BROKEN_OUTPUTS, DRIVEN
+from drake_formation.parts.objects.breaking import breaks
 from drake_formation.scenario import Scenario, resolve
+from drake_formation.simulation.acting import acting, may_let_go
 from drake_formation.simulation.choice import Choice
 from drake_formation.simulation.motion import Motion
 from drake_formation.simulation.recorder import OBJECT, Recording
@@ -16,6 +19,10 @@ from drake_formation.vectors import length_of
 
 Array = NDArray[np.float64]
 
+BROKEN_AT = {False: "broken_at", True: "grip_broken_at"}
+"""When each spring broke, or each grip where the object is a body of its own (s)."""
+ACTING = {False: "acting", True: "grip_acting"}
+"""Which of them act."""
 FORCES = ("tracking_force", "consensus_force", "avoidance_force")
 
 
@@ -90,6 +97,15 @@ def time_series(scenario: Scenario, choice: Choice, run: Recording, nominal: Rec
         arrays |= {"object_pose": pose, "object_strain": strain[:, 0]}
     if formation.telling_channels:
         arrays["traffic"] = run.series("traffic")
+    if breaks(formation):
+        intact, broken_at = (run.series(name)[-1, 0] for name in BROKEN_OUTPUTS)
+        arrays[BROKEN_AT[formation.has_body]] = np.where(intact == 1.0, np.nan, broken_at)
+    if may_let_go(formation):
+        broken = arrays.get(BROKEN_AT[formation.has_body])
+        arrays[ACTING[formation.has_body]] = acting(formation, broken, run.times).astype(float)
+    if DRIVEN in formation.signals:
+        arrays["driven"] = run.series(DRIVEN)[:, 0]
+        arrays["control_force"] = arrays["control_force"] * arrays["driven"][..., None]
     return Series(arrays, scenario, choice)
 
 

@@ -12,6 +12,7 @@ from drake_formation.parts.avoidance.barrier import BarrierFilter
 from drake_formation.parts.avoidance.khatib import ObstacleAvoidance
 from drake_formation.parts.avoidance.rotational import rotational_force
 from drake_formation.parts.coordination.consensus import ConsensusController
+from drake_formation.parts.objects.breaking import Breaking, SpringsBear
 from drake_formation.parts.references.set_point import SetPoint
 from drake_formation.parts.robots.omnidirectional import Omnidirectional
 from drake_formation.parts.robots.plant import PlanarRobot
@@ -24,7 +25,9 @@ from drake_formation.parts.tracking.integral_controller import IntegralControlle
 from drake_formation.parts.tracking.lqr import lqr_force
 from drake_formation.systems.consensus_error import ConsensusError
 from drake_formation.systems.hand_off import HandOff
+from drake_formation.systems.heeding import Heeding
 from drake_formation.systems.sensing import NearestSensing
+from drake_formation.systems.staged_signals import StagedSignals
 
 SPRINGS = [[10.0, 2.0, 0.5, -1.0], [20.0, 3.0, 1.0, 1.0]]
 OBSTACLES = [[0.5, 0.5, 0.0], [-1.0, 0.5, 0.2], [40.0, 0.0, 0.0]]
@@ -43,6 +46,9 @@ MAKERS = {
     "plant without springs": lambda: RobotPlant([], Hookean, [40.0], np.zeros((0, 4)), [1.0, 2.0, 3.0, 4.0]),
     "plant with drag": lambda: PlanarRobot(
         dragged_mass, [2, 3], Hookean, [[40.0], [5.0]], SPRINGS, [1.0, 2.0, 3.0, 4.0]
+    ),
+    "plant that may fail": lambda: RobotPlant(
+        [2, 3], Hookean, [40.0], SPRINGS, [1.0, 2.0, 3.0, 4.0], may_fail=True, releases=("intact", "held")
     ),
     "omnidirectional plant": lambda: plant(Omnidirectional, [0.3, -0.1]),
     "omnidirectional plant with limits": lambda: plant(Omnidirectional, [0.3, -0.1], wheel_force_limit=0.2),
@@ -70,12 +76,25 @@ MAKERS = {
     "consensus error": lambda: ConsensusError([[0.0, 0.5], [0.5, -0.5], [-0.5, -0.5]]),
     "set point": lambda: SetPoint([2.5, 3.5], [25.0, 3.5]),
     "hand-off": lambda: HandOff(3.0),
+    "staged signals": lambda: StagedSignals(1, ["one", "two"], [[[1.0], [2.0]], [[3.0, 4.0], [5.0, 6.0]]]),
+    "heeding": lambda: Heeding([0.5, -0.5]),
+    "breaking": lambda: Breaking(
+        SpringsBear(Hookean, ((0, 1),), False),
+        {"state_1": 4, "state_2": 4},
+        0.1,
+        0.1,
+        [SPRINGS[0], [np.inf, 5.0]],
+        1,
+        {"intact_1": [0]},
+    ),
 }
 
 SILENT = {
     ("state", "force"), ("state", "phase"), ("state", "spring"), ("spring_force", "force"),
+    ("state", "intact"), ("state", "held"), ("state", "failure"), ("spring_force", "failure"),
+    ("intact", "state"), ("intact_1", "state"), ("broken_at", "state"),
 }  # fmt: skip
-"""Outputs of the plant and the inputs that do not reach them at once. All others do, in every block."""
+"""Outputs and the inputs that do not reach them at once. All others do, in every block."""
 
 REMEMBERED = {("force", "demanded"), ("force", "applied"), ("error", "demanded"), ("error", "applied")}
 """Likewise of blocks with a state that they change."""

@@ -34,24 +34,25 @@ def _verdict(certificate: Certificate) -> Iterator[RenderableType]:
         label, reason = certificate.channels.label, certificate.channels.reason
         style = {"stable": "bold green", "unstable": "bold red"}.get(label, "bold yellow")
         yield Text.assemble((f"over its channels: {label}. ", style), f"{reason[0].upper()}{reason[1:]}.")
-        yield Text("All that follows is for the same formation with wires for channels.")
     yield from _verdict_over_wires(certificate)
+    if certificate.channels is not None:
+        yield Text("All that follows is for the same formation with wires for channels.")
 
 
 def _verdict_over_wires(certificate: Certificate) -> Iterator[RenderableType]:
-    modes = certificate.modes
+    modes, over = certificate.modes, "" if certificate.channels is None else "over wires, "
     if modes.stable:
         slowest = modes.slowest
         kinds = ", ".join(dict.fromkeys(mode.kind for mode in slowest))
         yield Text.assemble(
-            ("stable: yes. ", "bold green"),
+            (f"{over}stable: yes. ", "bold green"),
             f"Every small deviation dies out. The slowest motion ({kinds}) decays at {_number(slowest[0].decay_rate)} "
             f"1/s and stays below 2 % of its beginning after {_number(slowest[0].settling_time)} s.",
         )
         return
     if modes.stable is None:
         yield Text.assemble(
-            ("stable: cannot be told. ", "bold yellow"),
+            (f"{over}stable: cannot be told. ", "bold yellow"),
             "A motion decays or grows so slowly beside the fastest one that rounding hides which. The numbers of the "
             "scenario are too far apart in size: look at springs.stiffness, consensus.delta and consensus.delta_v.",
         )
@@ -59,7 +60,7 @@ def _verdict_over_wires(certificate: Certificate) -> Iterator[RenderableType]:
     fastest = sorted(modes.unstable, key=lambda mode: mode.decay_rate)
     grown = "; ".join(f"{mode.kind} grows at {_number(-mode.decay_rate)} 1/s, {_pace(mode)}" for mode in fastest[:3])
     more = f"; and {len(fastest) - 3} more" if len(fastest) > 3 else ""
-    yield Text.assemble(("stable: no. ", "bold red"), f"Any disturbance grows: {grown}{more}.")
+    yield Text.assemble((f"{over}stable: no. ", "bold red"), f"Any disturbance grows: {grown}{more}.")
     yield Text(f"Why: {certificate.cause}.")
     for remedy in certificate.remedies:
         yield Text(f"Try {remedy}.")

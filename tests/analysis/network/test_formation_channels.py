@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from drake_formation import load_scenario, simulate
-from drake_formation.analysis import linearize
-from drake_formation.analysis.network.formation_channels import channel_certificate
+from drake_formation.analysis import channel_certificate, delay_margin, linearize
 from drake_formation.parts.channels.delay import Delay
 from drake_formation.parts.channels.packets import Packets
 
@@ -58,6 +57,11 @@ def test_simulation_decays_below_the_boundary_and_grows_above(case):
     assert growth(channel(0.99 * edge)) < 0
     above = channel(1.01 * edge)
     assert growth(above) == pytest.approx(verdict(**above).growth_1_per_s, rel=0.05)
+
+
+def test_a_pure_delay_is_certified_up_to_the_delay_margin():
+    channel, low, high = CHANNELS["pure delay"]
+    assert boundary(channel, low, high) == pytest.approx(delay_margin(over_wires()).delay_s, rel=2e-4)
 
 
 def test_so_do_drakes_own_blocks():

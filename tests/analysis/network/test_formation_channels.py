@@ -5,6 +5,9 @@ from functools import cache
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from strategies import scenarios
 
 from drake_formation import load_scenario, simulate
 from drake_formation.analysis import channel_certificate, delay_margin, linearize
@@ -90,6 +93,17 @@ def test_no_run_contradicts_the_label_of_a_profile(profile, delta_v):
     assert label == ("stable" if delta_v else "unstable")
     _, size = swings({"profile": profile}, **{"consensus.delta_v": delta_v, "transport.duration": 8.0})
     assert (size[-20:].max() < size[0]) == (label == "stable")
+
+
+@given(scenario=scenarios(robots=st.integers(2, 4)))
+@settings(max_examples=12)
+def test_channels_that_hardly_delay_are_wires(scenario):
+    formation = linearize(scenario)
+    roots = np.linalg.eigvals(formation.A)
+    slowest = roots.real.max()
+    part = Delay(Delay.Config(delay=min(1.0, 1e-2 * abs(slowest) / np.abs(roots).max() ** 2)))
+    found = channel_certificate(replace(formation, channels=(part,) * len(formation.channels)))
+    assert found is None or found.growth_1_per_s == pytest.approx(slowest, rel=0.1)
 
 
 def test_wires_have_no_verdict_of_their_own():

@@ -23,9 +23,13 @@ from drake_formation.analysis.gains.tuning import Tuned, tune
 from drake_formation.analysis.gains.velocity_gain import VelocityGain, velocity_gain
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.analysis.linear.linearization import NOT_COVERED, LinearFormation, at_rest, linearize
+from drake_formation.analysis.network.channel_verdict import ChannelVerdict, delay_verdict, packet_verdict
 from drake_formation.analysis.network.delay_margin import DelayMargin, delay_margin
+from drake_formation.analysis.network.formation_channels import channel_certificate
 from drake_formation.analysis.network.intervals import Interval
 from drake_formation.analysis.network.loss_margin import LossMargin, loss_margin, stable_losses
+from drake_formation.analysis.network.packets import PacketChannel
+from drake_formation.analysis.network.rightmost_root import rightmost_root
 from drake_formation.analysis.network.sampled_data import SampledLoop, longest_period, stable_periods
 from drake_formation.analysis.network.stable_delays import stable_delays
 from drake_formation.analysis.response.disturbance import Disturbance, disturbance
@@ -49,6 +53,7 @@ __all__ = [
     "NOT_COVERED",
     "AveragingWeights",
     "Certificate",
+    "ChannelVerdict",
     "CheapestGraph",
     "DelayMargin",
     "DesignAdvice",
@@ -67,6 +72,7 @@ __all__ = [
     "Mode",
     "Modes",
     "ObstacleEffect",
+    "PacketChannel",
     "ParetoFront",
     "Pulse",
     "Questions",
@@ -81,8 +87,10 @@ __all__ = [
     "WorstCaseForce",
     "at_rest",
     "certify",
+    "channel_certificate",
     "cheapest_graph",
     "delay_margin",
+    "delay_verdict",
     "design",
     "distributed_lqr",
     "disturbance",
@@ -95,8 +103,10 @@ __all__ = [
     "loss_margin",
     "modes",
     "obstacle_effect",
+    "packet_verdict",
     "pareto_front",
     "remedies",
+    "rightmost_root",
     "smallest_delta",
     "spring_linearization",
     "stable_delays",

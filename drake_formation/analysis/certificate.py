@@ -13,12 +13,16 @@ from threadpoolctl import threadpool_limits
 
 from drake_formation.analysis.linear.errors import UNSOLVABLE, IllPosedError
 from drake_formation.analysis.linear.linearization import NOT_COVERED, LinearFormation, linearize
+from drake_formation.analysis.network.channel_verdict import ChannelVerdict
 from drake_formation.analysis.stability.modes import Modes, modes
 from drake_formation.analysis.stability.stabilization import Remedy, cause, remedies
 from drake_formation.scenario import Scenario
 
 LONGEST_PERIOD = 10.0
 """No loss margin is looked for at a longer sampling period (s)."""
+
+WIRES = "channels: all but the verdict and the section on them is for a formation whose channels are wires"
+"""What is not covered, besides, where they are not."""
 
 UNITS = {
     "keys": "SI; a key ends in its unit, and what has none is a pure number or one of those below",
@@ -87,19 +91,34 @@ class Certificate:
     unanswered: dict[str, str] = field(default_factory=dict)
 
     @property
+    def channels(self) -> ChannelVerdict | None:
+        """What is certain over the scenario's channels; None where they are wires."""
+        return self.sections.get("channels")
+
+    @property
     def stable(self) -> bool | None:
-        """Whether the formation returns to rest from every small deviation; None where rounding hides it."""
-        return self.modes.stable
+        """Whether the formation returns to rest from every small deviation, over its channels as they are.
+
+        None where that is not certified: rounding hides it, or nothing is known about such channels.
+        """
+        if self.channels is None:
+            return self.modes.stable
+        return {"stable": True, "unstable": False}.get(self.channels.label)
+
+    @property
+    def not_covered(self) -> tuple[str, ...]:
+        """What the certificate says nothing about."""
+        return NOT_COVERED if self.channels is None else (*NOT_COVERED, WIRES)
 
     @cached_property
     def cause(self) -> str | None:
-        """Why the loop is unstable, in a sentence; None for others."""
-        return cause(self.formation) if self.stable is False else None
+        """Why the loop is unstable even over wires, in a sentence; None for others."""
+        return cause(self.formation) if self.modes.stable is False else None
 
     @cached_property
     def remedies(self) -> tuple[Remedy, ...]:
-        """Changes that make an unstable loop stable; none for others."""
-        return remedies(self.formation) if self.stable is False else ()
+        """Changes that make a loop stable that is unstable even over wires; none for others."""
+        return remedies(self.formation) if self.modes.stable is False else ()
 
     @cached_property
     def no_limit(self) -> list[str]:
@@ -134,7 +153,7 @@ class Certificate:
             "no_limit": self.no_limit,
             "unanswered": self.unanswered,
             **answers,
-            "not_covered": list(NOT_COVERED),
+            "not_covered": list(self.not_covered),
             "units": UNITS,
             "versions": versions(),
             "scenario": self.scenario.model_dump(mode="json"),
@@ -212,6 +231,12 @@ def _springs(formation: LinearFormation, _: Questions) -> Any:
     return spring_linearization(formation)
 
 
+def _channels(formation: LinearFormation, _: Questions) -> Any:
+    from drake_formation.analysis.network.formation_channels import channel_certificate
+
+    return channel_certificate(formation)
+
+
 def _smallest_delta(formation: LinearFormation, asked: Questions) -> Any:
     from drake_formation.analysis.gains.position_gain import smallest_delta
 
@@ -267,6 +292,7 @@ def _design(formation: LinearFormation, asked: Questions) -> Any:
 
 
 SECTIONS: dict[str, Callable[[LinearFormation, Questions], Any]] = {
+    "channels": _channels,
     "local": _local,
     "springs": _springs,
     "smallest_delta": _smallest_delta,

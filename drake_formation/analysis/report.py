@@ -10,7 +10,6 @@ from rich.table import Table
 from rich.text import Text
 
 from drake_formation.analysis.certificate import Certificate
-from drake_formation.analysis.linear.linearization import NOT_COVERED
 from drake_formation.analysis.linear.motion_subspaces import PARTS
 from drake_formation.analysis.stability.local_lqr import GUARANTEED_GAIN, GUARANTEED_PHASE_DEG
 from drake_formation.analysis.stability.modes import Mode
@@ -31,19 +30,29 @@ def report(certificate: Certificate) -> RenderableType:
 
 
 def _verdict(certificate: Certificate) -> Iterator[RenderableType]:
-    modes = certificate.modes
+    if certificate.channels is not None:
+        label, reason = certificate.channels.label, certificate.channels.reason
+        style = {"stable": "bold green", "unstable": "bold red"}.get(label, "bold yellow")
+        yield Text.assemble((f"over its channels: {label}. ", style), f"{reason[0].upper()}{reason[1:]}.")
+    yield from _verdict_over_wires(certificate)
+    if certificate.channels is not None:
+        yield Text("All that follows is for the same formation with wires for channels.")
+
+
+def _verdict_over_wires(certificate: Certificate) -> Iterator[RenderableType]:
+    modes, over = certificate.modes, "" if certificate.channels is None else "over wires, "
     if modes.stable:
         slowest = modes.slowest
         kinds = ", ".join(dict.fromkeys(mode.kind for mode in slowest))
         yield Text.assemble(
-            ("stable: yes. ", "bold green"),
+            (f"{over}stable: yes. ", "bold green"),
             f"Every small deviation dies out. The slowest motion ({kinds}) decays at {_number(slowest[0].decay_rate)} "
             f"1/s and stays below 2 % of its beginning after {_number(slowest[0].settling_time)} s.",
         )
         return
     if modes.stable is None:
         yield Text.assemble(
-            ("stable: cannot be told. ", "bold yellow"),
+            (f"{over}stable: cannot be told. ", "bold yellow"),
             "A motion decays or grows so slowly beside the fastest one that rounding hides which. The numbers of the "
             "scenario are too far apart in size: look at springs.stiffness, consensus.delta and consensus.delta_v.",
         )
@@ -51,7 +60,7 @@ def _verdict(certificate: Certificate) -> Iterator[RenderableType]:
     fastest = sorted(modes.unstable, key=lambda mode: mode.decay_rate)
     grown = "; ".join(f"{mode.kind} grows at {_number(-mode.decay_rate)} 1/s, {_pace(mode)}" for mode in fastest[:3])
     more = f"; and {len(fastest) - 3} more" if len(fastest) > 3 else ""
-    yield Text.assemble(("stable: no. ", "bold red"), f"Any disturbance grows: {grown}{more}.")
+    yield Text.assemble((f"{over}stable: no. ", "bold red"), f"Any disturbance grows: {grown}{more}.")
     yield Text(f"Why: {certificate.cause}.")
     for remedy in certificate.remedies:
         yield Text(f"Try {remedy}.")
@@ -216,8 +225,8 @@ def _unanswered(certificate: Certificate) -> Iterator[RenderableType]:
         yield Text(f"{_LABELS.get(name, name)}: {reason}")
 
 
-def _not_covered(_: Certificate) -> Iterator[RenderableType]:
-    yield from (Text(f"- {line}") for line in NOT_COVERED)
+def _not_covered(certificate: Certificate) -> Iterator[RenderableType]:
+    yield from (Text(f"- {line}") for line in certificate.not_covered)
 
 
 _BLOCKS: dict[str, Callable[[Certificate], Iterator[RenderableType]]] = {
@@ -235,6 +244,7 @@ _BLOCKS: dict[str, Callable[[Certificate], Iterator[RenderableType]]] = {
 }
 
 _LABELS = {
+    "channels": "channels",
     "local": "local loop",
     "springs": "carried object",
     "smallest_delta": "smallest δ",

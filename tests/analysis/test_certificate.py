@@ -31,7 +31,7 @@ def test_it_has_what_is_promised_as_plain_json(steel):
     assert set(told["versions"]) >= {"drake", "drake-formation", "numpy", "python", "scipy"}
     for section in certificate.SECTIONS:
         assert section in told
-        assert told[section] is not None or section in ("smallest_delta", "topology")
+        assert told[section] is not None or section in ("channels", "smallest_delta", "topology")
 
 
 def test_the_scenario_in_it_repeats_it(steel):
@@ -76,6 +76,26 @@ def test_an_unstable_loop_is_certified_as_unstable():
     assert mended.stable
     assert mended.cause is None
     assert mended.remedies == ()
+
+
+@pytest.mark.parametrize(
+    ("channel", "stable", "label"),
+    [
+        ({"kind": "delay", "delay": 9.5e-4}, False, "unstable"),
+        ({"kind": "delay", "delay": 8.5e-4}, True, "stable"),
+        ({"kind": "packets", "quantum": 0.1}, None, "not certified"),
+    ],
+)
+def test_a_scenario_is_as_stable_as_over_its_channels(channel, stable, label):
+    """Neighbours' states may be 0.9 ms late."""
+    changes = {"springs.stiffness": 3e4, "consensus.delta": 1e4, "consensus.channel": channel}
+    scenario = load_scenario("line", overrides=changes)
+    found = certify(scenario)
+    told = json.loads(found.to_json())
+    assert (found.stable, told["stable"], told["channels"]["label"]) == (stable, stable, label)
+    assert found.modes.stable
+    assert told["scenario"]["consensus"]["channel"]["kind"] == channel["kind"]
+    assert any("wires" in line for line in told["not_covered"])
 
 
 def test_one_robot_has_modes_and_no_margins():

@@ -40,6 +40,25 @@ def test_an_unstable_loop_is_called_unstable_with_what_to_try():
     assert "No answer" in text
 
 
+@pytest.mark.parametrize(
+    ("channel", "said"),
+    [
+        ({"kind": "packets", "profile": "factory"}, "over its channels: unstable. In the mean over what is lost,"),
+        ({"kind": "delay", "delay": 8e-4}, "over its channels: stable. Every motion decays"),
+        (
+            {"kind": "packets", "profile": "lossy"},
+            "over its channels: not certified. Delays differ from packet to packet",
+        ),
+    ],
+)
+def test_channels_have_a_verdict_and_the_rest_is_said_to_be_for_wires(channel, said):
+    text = printed("line", **{"springs.stiffness": 3e4, "consensus.delta": 1e4, "consensus.channel": channel})
+    assert said in text
+    assert "over wires, stable: yes." in text
+    assert "All that follows is for the same formation with wires for channels." in text
+    assert "channels: all but the verdict" in text
+
+
 def test_what_rounding_hides_is_said():
     assert "stable: cannot be told." in printed("line", **{"consensus.delta_v": 1e9})
 

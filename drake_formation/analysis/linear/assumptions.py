@@ -12,7 +12,7 @@ from drake_formation.parts.tracking.lqr import Lqr
 
 
 def require_linear_consensus(formation: Formation) -> None:
-    """Linear consensus with one δ and δ_v for all robots, over channels that are wires and weigh alike both ways.
+    """Linear consensus with one δ and δ_v for all robots, over channels that weigh alike both ways.
 
     Raises:
         IllPosedError: it is another law, or differs between robots or directions.
@@ -27,8 +27,6 @@ def require_linear_consensus(formation: Formation) -> None:
         raise IllPosedError("robots have different consensus.delta or delta_v; what is certified is one for all")
     if not formation.channels.undirected:
         raise IllPosedError("channels go one way or weigh differently each way; what is certified goes both ways alike")
-    if not all(getattr(part, "is_wire", False) for part in formation.parts["channel"]):
-        raise IllPosedError("channels are not ideal; what is certified are wires")
 
 
 def require_springs(formation: Formation) -> None:

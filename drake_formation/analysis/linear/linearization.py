@@ -25,6 +25,7 @@ from drake_formation.diagram import build_diagram
 from drake_formation.formation.formation import Formation
 from drake_formation.parameters import find_block, has_block, placed_parts, robot_name
 from drake_formation.parts.objects.breaking import BOUNDS, breaks
+from drake_formation.parts.part import Part
 from drake_formation.scenario import Scenario, resolve, with_overrides
 from drake_formation.sources import OWN
 from drake_formation.systems.templates import CONVERTING
@@ -49,10 +50,10 @@ class LinearFormation:
     """ẋ = A x + B f about the formation at rest at its goal; x is the deviation, robot after robot.
 
     The consensus law is linear in its gains, so A is kept in parts: ``A(δ, δ_v) = tracking + springs + δ per_delta +
-    δ_v per_delta_v``.
+    δ_v per_delta_v``. All of it is for channels that are wires.
 
     Attributes:
-        scenario: what was linearized: in transport, at its goal, without obstacles.
+        scenario: what was linearized: in transport, at its goal, without obstacles, with wires for channels.
         tracking: plants with their local controllers alone, shape (4N, 4N).
         springs: what the object adds, shape (4N, 4N).
         per_delta: what consensus adds for every N/m of δ, shape (4N, 4N).
@@ -60,6 +61,7 @@ class LinearFormation:
         B: accelerations from forces on the robots (N), x and y robot after robot, shape (4N, 2N).
         delta: the scenario's consensus gain δ (N/m).
         delta_v: the scenario's velocity consensus gain δ_v (N s/m).
+        channels: the parts that stand in the scenario for the wires, one a channel.
     """
 
     scenario: Scenario
@@ -70,6 +72,7 @@ class LinearFormation:
     B: Array
     delta: float
     delta_v: float
+    channels: tuple[Part, ...]
 
     @property
     def resolved(self) -> Formation:
@@ -113,7 +116,8 @@ def linearize(scenario: Scenario) -> LinearFormation:
     """Linearize a scenario's diagram about its formation at rest at the goal.
 
     Args:
-        scenario: what to analyse; its start, phases, reference and obstacles play no part.
+        scenario: what to analyse; its start, phases, reference and obstacles play no part, and its channels are only
+            kept.
 
     Raises:
         ScenarioError: the scenario is wrong.
@@ -128,7 +132,7 @@ def linearize(scenario: Scenario) -> LinearFormation:
     diagram = build_diagram(rest)
     _require_states(diagram, formation)
     try:
-        return _linearized(rest, diagram)
+        return _linearized(rest, diagram, resolve(scenario).parts["channel"])
     except Exception as error:
         guests = {part.called() for parts in formation.parts.values() for part in parts if part.distribution != OWN}
         if not guests:
@@ -139,7 +143,7 @@ def linearize(scenario: Scenario) -> LinearFormation:
         ) from error
 
 
-def _linearized(rest: Scenario, diagram: Diagram) -> LinearFormation:
+def _linearized(rest: Scenario, diagram: Diagram, channels: tuple[Part, ...]) -> LinearFormation:
     formation, context = resolve(rest), diagram.CreateDefaultContext()
     state_matrix = StateMatrix(diagram)
     phase = diagram.GetSubsystemByName("phase").GetMyMutableContextFromRoot(context)
@@ -164,11 +168,12 @@ def _linearized(rest: Scenario, diagram: Diagram) -> LinearFormation:
         B=_force_matrix(diagram, rest),
         delta=float(gains.delta),
         delta_v=float(gains.delta_v),
+        channels=channels,
     )
 
 
 def at_rest(scenario: Scenario) -> Scenario:
-    """The scenario as it is linearized: in formation at the goal from the start, in transport, without obstacles.
+    """The scenario as it is linearized: in formation at the goal, in transport, without obstacles, over wires.
 
     Drake's ``Linearize(diagram, diagram.CreateDefaultContext())`` takes the diagram built from it. It does not take one
     with discrete state, as the hand-off, failures and breaks are: none of these is in it.
@@ -187,6 +192,7 @@ def at_rest(scenario: Scenario) -> Scenario:
         "robots.start": {"centre": list(scenario.transport.goal)},
         "transport.reference": {"kind": "set_point"},
         "avoidance": {"obstacles": []},
+        "consensus.channel": {"kind": "ideal"},
     }
     if getattr(scenario.robots, "velocity", None) not in (None, (0.0, 0.0)):
         changes["robots.velocity"] = [0.0, 0.0]

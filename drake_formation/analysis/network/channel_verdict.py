@@ -26,9 +26,6 @@ Label = Literal["stable", "unstable", "not certified"]
 UNDECIDED = 1e-9
 """A spectral radius this near to 1 is on neither side of it: rounding hides which."""
 
-LARGEST_TICK = 800
-"""States, of robots, packets under way and memories together, up to which a tick is worked out: half a minute."""
-
 UNKNOWN: Label = "not certified"
 
 
@@ -63,13 +60,7 @@ def packet_verdict(present: Array, channels: Sequence[PacketChannel]) -> Channel
         ticks = packet_ticks(present, channels)
     except IllPosedError as error:
         return ChannelVerdict(UNKNOWN, str(error))
-    size = len(ticks[0].loop.base)
-    if size > LARGEST_TICK:
-        reason = (
-            f"{size} states, with packets under way and memories, are too many; at most {LARGEST_TICK} are looked at"
-        )
-        return ChannelVerdict(UNKNOWN, reason)
-    whole = reduce(lambda before, tick: tick.mean @ before, ticks, np.eye(size))
+    whole = reduce(lambda before, tick: tick.mean @ before, ticks, np.eye(len(ticks[0].loop.base)))
     radius = float(np.abs(np.linalg.eigvals(whole)).max())
     growth = float(np.log(max(radius, np.finfo(float).tiny))) / (schedule(channels).tick * len(ticks))
     verdict = _by_growth(growth, hidden=abs(radius - 1) <= UNDECIDED)

@@ -25,6 +25,9 @@ Array = NDArray[np.float64]
 MOST_TICKS = 200
 """Ticks until all channels send together again, up to which their periods are taken to have a common one."""
 
+LARGEST = 800
+"""States, with packets under way and what is remembered, up to which ticks are worked out: half a minute."""
+
 ON_TIME = 1e-9
 """A packet that is late by this share of the time between two looks is not late."""
 
@@ -134,10 +137,16 @@ def packet_ticks(present: Array, channels: Sequence[PacketChannel]) -> list[Pack
         channels: at least one, all of which carry as many numbers.
 
     Raises:
-        IllPosedError: they have no common tick.
+        IllPosedError: they have no common tick, or too much is under way.
     """
     times = schedule(channels)
-    layout, flow = _Layout(present, channels, times), _Flow(present, channels, times.tick)
+    layout = _Layout(present, channels, times)
+    if layout.size > LARGEST:
+        raise IllPosedError(
+            f"{layout.size} states, with packets under way and what is remembered, are too many; at most {LARGEST} are "
+            "looked at"
+        )
+    flow = _Flow(present, channels, times.tick)
     shift = layout.shift(flow.alone)
     return [_tick(shift, layout, flow, channels, times, k) for k in range(times.ticks)]
 

@@ -15,8 +15,8 @@ from pydrake.systems.framework import Context, Diagram
 from pydrake.systems.primitives import Linearize
 
 from drake_formation.analysis.linear.assumptions import (
+    require_consensus,
     require_free_masses,
-    require_linear_consensus,
     require_springs,
 )
 from drake_formation.analysis.linear.errors import IllPosedError
@@ -34,7 +34,8 @@ STATES = 4
 
 NOT_COVERED = (
     "avoidance: every number is for a formation outside the sensing range of all obstacles",
-    "large displacements: springs are linearized about the formation at rest; a rotated formation has other ones",
+    "large displacements: springs, and consensus on distances, are linearized about the formation at rest; a rotated "
+    "formation has other ones",
     "saturation: forces are taken as unlimited",
     "the hand-off: the object is in place",
 )
@@ -45,7 +46,7 @@ NOT_COVERED = (
 class LinearFormation:
     """ẋ = A x + B f about the formation at rest at its goal; x is the deviation, robot after robot.
 
-    The consensus law is linear in its gains, so A is kept in parts: ``A(δ, δ_v) = tracking + springs + δ per_delta +
+    Consensus forces are linear in their gains, so A is kept in parts: ``A(δ, δ_v) = tracking + springs + δ per_delta +
     δ_v per_delta_v``.
 
     Attributes:
@@ -120,7 +121,7 @@ def linearize(scenario: Scenario) -> LinearFormation:
     formation = resolve(rest)
     require_springs(formation)
     require_free_masses(formation)
-    require_linear_consensus(formation)
+    require_consensus(formation)
     diagram = build_diagram(rest)
     _require_states(diagram, formation)
     try:

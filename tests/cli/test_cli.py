@@ -168,6 +168,12 @@ def test_reproduce_names_the_nearest_part(cli):
     assert "did you mean 'table3'" in err
 
 
+def test_reproduce_writes_a_report_or_tries_topologies(cli):
+    status, _, err = cli("reproduce", "--only", "table3", "--topologies")
+    assert status == 2
+    assert "give one of them" in err
+
+
 def test_parts_are_listed_with_their_packages(cli):
     status, out, _ = cli("parts")
     assert status == 0

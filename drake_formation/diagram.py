@@ -16,6 +16,7 @@ from drake_formation.scenario import Scenario, resolve
 from drake_formation.systems.consensus_error import ConsensusError
 from drake_formation.systems.hand_off import HandOff
 from drake_formation.systems.holding_sensing import HoldingSensing
+from drake_formation.systems.line_of_sight import LineOfSight
 from drake_formation.systems.sensing import NearestSensing
 
 ROBOT_OUTPUTS = (
@@ -35,7 +36,7 @@ ACCELERATION = "acceleration"
 OBJECT_OUTPUTS = ("pose", "strain")
 """Output ports of the carried object, where it is a body of its own, after ``object_``."""
 
-PORT_ORDER = ("phase", "reference", "spring", "load", "channel", "sensed")
+PORT_ORDER = ("phase", "reference", "spring", "load", "channel", "sensed", "visible")
 """Input ports of every robot, by the stem of their names, as far as its blocks have them."""
 
 
@@ -87,7 +88,10 @@ def wired(formation: Formation) -> Diagram:
         _carry(builder, phase, robots, formation, parameters)
     _talk(builder, phase, robots, formation, parameters)
     if any("sensed" in _input_names(robot) for robot in robots):
-        _sense_nearest(builder, robots, parameters)
+        _sense_nearest(builder, robots, formation, parameters)
+    if any("visible" in _input_names(robot) for robot in robots):
+        block = LineOfSight(*parameters["line_of_sight"], formation.obstacles.layout)
+        _sense(builder, robots, block, "line_of_sight", "visible")
     for i, robot in enumerate(robots):
         for output in (*ROBOT_OUTPUTS, ACCELERATION):
             if output != ACCELERATION or robot.HasOutputPort(output):
@@ -109,8 +113,8 @@ def robot_diagram(formation: Formation, robot: int) -> Diagram:
 
     Returns:
         The robot, with the input ports that its blocks ask for, of ``phase``, ``reference``, ``spring_j``,
-        ``load``, ``channel_j`` and ``sensed``, and the output ports named in ``ROBOT_OUTPUTS``, and ``ACCELERATION``
-        where its plant has it.
+        ``load``, ``channel_j``, ``sensed`` and ``visible``, and the output ports named in ``ROBOT_OUTPUTS``, and
+        ``ACCELERATION`` where its plant has it.
 
     Raises:
         PartError: a part has not the ports that its role asks for.
@@ -246,14 +250,22 @@ def _talk(
         builder.Connect(block.GetOutputPort("received"), heard)
 
 
-def _sense_nearest(builder: DiagramBuilder, robots: list[Diagram], parameters: Parameters) -> None:
-    centres, *margin = parameters["sensing"]
-    block = HoldingSensing(len(robots), centres, *margin) if margin else NearestSensing(len(robots), centres)
-    sensing = builder.AddNamedSystem("sensing", block)
+def _sense_nearest(
+    builder: DiagramBuilder, robots: list[Diagram], formation: Formation, parameters: Parameters
+) -> None:
+    obstacles, *margin = parameters["sensing"]
+    kind = HoldingSensing if margin else NearestSensing
+    block = kind(len(robots), obstacles, *margin, formation.obstacles.layout)
+    _sense(builder, robots, block, "sensing", "sensed")
+
+
+def _sense(builder: DiagramBuilder, robots: list[Diagram], block: System, name: str, port: str) -> None:
+    """Wire a block that tells every robot about the obstacles, from the states of all, to those that ask for it."""
+    sensing = builder.AddNamedSystem(name, block)
     for i, robot in enumerate(robots):
         builder.Connect(robot.GetOutputPort("state"), sensing.get_input_port(i))
-        if "sensed" in _input_names(robot):
-            builder.Connect(sensing.get_output_port(i), robot.GetInputPort("sensed"))
+        if port in _input_names(robot):
+            builder.Connect(sensing.get_output_port(i), robot.GetInputPort(port))
 
 
 def _observe_consensus(builder: DiagramBuilder, robots: Iterable[Diagram], parameters: Parameters) -> None:

@@ -34,8 +34,9 @@ KNOWN: dict[str, tuple[type[Part], ...]] = {
 def control_law(formation: Formation, times: Array, recorded: Array) -> Law:
     """The control u of every robot during transport (paper, Eq. 8), as a function of time and state.
 
-    Where a robot has parts of other kinds, which may have states of their own, or where robots remember
-    what they sense or keep away from each other, it is read off what was recorded.
+    Where a robot has parts of other kinds, which may have states of their own, where robots remember what they sense,
+    keep away from each other or have footprints, or where obstacles are no circles or move, it is read off what was
+    recorded.
 
     Args:
         formation: what ran.
@@ -43,8 +44,11 @@ def control_law(formation: Formation, times: Array, recorded: Array) -> Law:
         recorded: the control forces then (N), shape (m, N, 2).
     """
     known = all(isinstance(part, kinds) for role, kinds in KNOWN.items() for part in formation.parts[role])
-    if known and not any(part.margin or part.config.robots for part in formation.parts["avoidance"]):
-        return ControlLaw(formation)
+    fields = formation.parts["avoidance"]
+    if known and formation.obstacles.are_circles and not formation.footprints.any():
+        remember = (part.margin or part.config.robots or part.config.line_of_sight for part in fields)
+        if not any(remember):
+            return ControlLaw(formation)
 
     def between(at: Array, position: Array, _velocity: Array) -> Array:
         columns = recorded.reshape(len(times), -1).T
@@ -79,7 +83,7 @@ class ControlLaw:
         ]
         self._consensus_gains = gains
         self._range, self._gain = np.array([group[0] for group in own["avoidance"]]).T
-        self._obstacles = formation.obstacles
+        self._obstacles = formation.obstacles.discs
         fields = formation.parts["avoidance"]
         self._masked = np.array([field.masked for field in fields])
         self._feels = np.array([field.feels(formation, i) for i, field in enumerate(fields)], dtype=float)

@@ -32,12 +32,12 @@ VARIABLES = {
     "spring_force": (VECTOR, "N", "what the object exerts on a robot"),
     "spring_length": (("time", "spring"), "m", "length d of a spring"),
     "rest_length": (("spring",), "m", "length r of a spring at rest"),
-    "clearance": (("time", "robot", "obstacle"), "m", "distance to an obstacle"),
+    "clearance": (("time", "robot", "obstacle"), "m", "distance to an obstacle, from the robot's footprint"),
     "phase": (("time",), "1", "0 aggregation, 1 transport"),
     "slot": (("robot", "axis"), "m", "slot h relative to the formation centre"),
     "goal": (("axis",), "m", "formation centre to reach"),
     "aggregation_centre": (("axis",), "m", "formation centre to gather about"),
-    "obstacle_position": (("obstacle", "axis"), "m", "centre of an obstacle"),
+    "obstacle_position": (("obstacle", "axis"), "m", "middle of an obstacle before it moves"),
     "obstacle_radius": (("obstacle",), "m", "radius of an obstacle"),
 }
 """Dimensions, unit and meaning of each variable."""
@@ -49,6 +49,12 @@ OBJECT_VARIABLES = {
 }
 """Those there are where the object is a body of its own."""
 
+SHAPES = {
+    "obstacle_outline": (("time", "obstacle", "vertex", "axis"), "m", "vertices of an obstacle"),
+    "robot_radius": (("robot",), "m", "radius of a robot's footprint"),
+}
+"""The first there is where an obstacle is no circle, or moves; the second where a robot is no point."""
+
 
 def labelled_result(series: Series) -> "xr.Dataset":
     """Label what came out of a run.
@@ -59,21 +65,24 @@ def labelled_result(series: Series) -> "xr.Dataset":
     Returns:
         A dataset over ``time`` (every step of the integrator), ``robot`` (from 1), ``axis`` (x, y), ``spring``
         (``1-2``) and ``obstacle`` (from 1); an object that is a body of its own has ``object_pose`` over ``pose``, and
-        ``object_strain``, as its kind says. ``deviation`` is NaN before the hand-off. A sample
+        ``object_strain``, as its kind says; obstacles that are no circles or move have ``obstacle_outline`` over
+        ``vertex``. ``deviation`` is NaN before the hand-off. A sample
         at the hand-off shows what is so from then on. Between samples the motion is the quintic with position,
         velocity and acceleration at both ends; :func:`drake_formation.measuring.metrics` measures that. The attribute
         ``remark`` says what to know about the run, if there is anything.
     """
     import xarray as xr  # slow to import, and not needed to build a diagram
 
-    has_body = resolve(series.scenario).has_body
+    formation = resolve(series.scenario)
+    has_body = formation.has_body
+    shapes = {name: description for name, description in SHAPES.items() if name in series}
+    named = VARIABLES | (OBJECT_VARIABLES if has_body else {}) | shapes
     variables = {
         name: xr.Variable(dimensions, series[name], {"units": units, "long_name": meaning})
-        for name, (dimensions, units, meaning) in (VARIABLES | (OBJECT_VARIABLES if has_body else {})).items()
+        for name, (dimensions, units, meaning) in named.items()
     }
     variables["phase"] = variables["phase"].astype(np.int8)
     scenario = series.scenario
-    formation = resolve(scenario)
     coordinates = {
         "time": ("time", series["time"], {"units": "s", "long_name": "time"}),
         "robot": np.arange(1, len(series["slot"]) + 1),

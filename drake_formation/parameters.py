@@ -48,7 +48,8 @@ def block_parameters(formation: Formation) -> Parameters:
     """The numeric parameters of every block of a formation's diagram; worked out once for a formation."""
     if "numbers" not in formation.kept:
         result: Parameters = {"consensus_error": (formation.slots,), "sensing": _sensing(formation)}
-        result["line_of_sight"] = formation.obstacles.numbers, formation.footprints
+        if any(getattr(part.config, "line_of_sight", False) for part in formation.parts["avoidance"]):
+            result["line_of_sight"] = formation.obstacles.numbers, formation.footprints
         for path, part, owner in placed_parts(formation):
             if groups := part.numbers(formation, owner):
                 result[path] = groups

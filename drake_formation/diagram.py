@@ -1,17 +1,21 @@
-"""A scenario as a Drake diagram: the only place that wires blocks (paper, Figs. 2 and 3)."""
+"""A scenario as a Drake diagram: where blocks are wired (paper, Figs. 2 and 3).
+
+What breaks and fails is wired in :mod:`drake_formation.failing`.
+"""
 
 from collections import defaultdict
 from collections.abc import Iterable
 from typing import Any
 
-from pydrake.systems.framework import Diagram, DiagramBuilder, System
-from pydrake.systems.primitives import Adder, ConstantVectorSource
+from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort, System
+from pydrake.systems.primitives import Adder, ConstantVectorSource, Gain
 
+from drake_formation.failing import Failing
 from drake_formation.formation.formation import Formation
 from drake_formation.parameters import Parameters, block_parameters, channel_name, robot_name, structure
 from drake_formation.parts.part import Part
 from drake_formation.parts.registry import PartError
-from drake_formation.parts.roles import CONTROLLERS, ROLES, Role
+from drake_formation.parts.roles import CONTROLLERS, ROLES, STATE, WIRES, Role
 from drake_formation.scenario import Scenario, resolve
 from drake_formation.systems.consensus_error import ConsensusError
 from drake_formation.systems.hand_off import HandOff
@@ -33,10 +37,13 @@ ROBOT_OUTPUTS = (
 ACCELERATION = "acceleration"
 """An output port of such robots as do not move as the forces on them by their mass say."""
 
+DEMANDED, MEASURED = "demanded_force", "measured"
+"""Output ports of such robots as have a computer or actuators, and sensors, that are no wires."""
+
 OBJECT_OUTPUTS = ("pose", "strain")
 """Output ports of the carried object, where it is a body of its own, after ``object_``."""
 
-PORT_ORDER = ("phase", "reference", "spring", "load", "channel", "sensed", "visible")
+PORT_ORDER = ("phase", "reference", "spring", "load", "intact", "held", "failure", "channel", "sensed", "visible")
 """Input ports of every robot, by the stem of their names, as far as its blocks have them."""
 
 
@@ -48,10 +55,13 @@ def build_diagram(scenario: Scenario) -> Diagram:
     :func:`drake_formation.analysis.at_rest` gives a scenario that starts where its diagram can be linearized. Output
     ports, for every robot i from 1: ``robot_i_state`` (m, m/s), ``robot_i_tracking_error`` x − x_r (m, m/s),
     ``robot_i_consensus_error`` (m), and in newtons ``robot_i_tracking_force`` u_l, ``robot_i_consensus_force`` u_g,
-    ``robot_i_avoidance_force``, ``robot_i_control_force`` (the sum of the three) and ``robot_i_spring_force``; of
-    robots that are no free masses ``robot_i_acceleration`` (m/s²); of an object that is a body of its own
-    ``object_pose`` (x, y, heading and their rates; m, rad) and ``object_strain``; and ``phase`` (0 aggregation, 1
-    transport).
+    ``robot_i_avoidance_force``, ``robot_i_control_force`` (what the actuators exert of the sum of the three: all of it
+    where they are ideal) and ``robot_i_spring_force``; of robots whose computer or actuators are no wires
+    ``robot_i_demanded_force`` (what is asked of the actuators: the sum of the three, or what a computer holds of it);
+    of robots whose sensors are no wires ``robot_i_measured`` (what they take for their state and send; ``state`` and
+    ``tracking_error`` are the true ones); of robots that are no free masses ``robot_i_acceleration`` (m/s²); of an
+    object that is a body of its own ``object_pose`` (x, y, heading and their rates; m, rad) and ``object_strain``; and
+    ``phase`` (0 aggregation, 1 transport).
 
     Args:
         scenario: what to build.
@@ -75,26 +85,27 @@ def wired(formation: Formation) -> Diagram:
     if reference.num_input_ports():
         builder.Connect(phase.get_output_port(), reference.GetInputPort("phase"))
     robots = [builder.AddNamedSystem(robot_name(i), robot_diagram(formation, i)) for i in range(formation.robots)]
-    for robot in robots:
+    failing = Failing(builder, formation, parameters)
+    for i, robot in enumerate(robots):
         for name in _input_names(robot):
             stem, _, number = name.rpartition("_")
             if name == "phase":
                 builder.Connect(phase.get_output_port(), robot.GetInputPort(name))
             elif name == "reference":
-                builder.Connect(reference.GetOutputPort("centre"), robot.GetInputPort(name))
+                builder.Connect(failing.reference(i, reference.GetOutputPort("centre")), robot.GetInputPort(name))
             elif stem == "spring":
                 builder.Connect(robots[int(number) - 1].GetOutputPort("state"), robot.GetInputPort(name))
-    if formation.has_body:
-        _carry(builder, phase, robots, formation, parameters)
-    _talk(builder, phase, robots, formation, parameters)
+    carried = _carry(builder, phase, robots, formation, parameters) if formation.has_body else None
+    failing.fail(robots, carried)
+    _talk(builder, phase, robots, formation, parameters, failing)
     if any("sensed" in _input_names(robot) for robot in robots):
         _sense_nearest(builder, robots, formation, parameters)
     if any("visible" in _input_names(robot) for robot in robots):
         block = LineOfSight(*parameters["line_of_sight"], formation.obstacles.layout)
         _sense(builder, robots, block, "line_of_sight", "visible")
     for i, robot in enumerate(robots):
-        for output in (*ROBOT_OUTPUTS, ACCELERATION):
-            if output != ACCELERATION or robot.HasOutputPort(output):
+        for output in (*ROBOT_OUTPUTS, ACCELERATION, DEMANDED, MEASURED):
+            if output in ROBOT_OUTPUTS or robot.HasOutputPort(output):
                 builder.ExportOutput(robot.GetOutputPort(output), f"{robot_name(i)}_{output}")
     _observe_consensus(builder, robots, parameters)
     builder.ExportOutput(phase.get_output_port(), "phase")
@@ -105,7 +116,7 @@ def wired(formation: Formation) -> Diagram:
 
 
 def robot_diagram(formation: Formation, robot: int) -> Diagram:
-    """Build one robot: its plant and its three controllers (paper, Fig. 3).
+    """Build one robot: its plant and its three controllers (paper, Fig. 3), its sensors, computer and actuators.
 
     Args:
         formation: the robot's.
@@ -113,48 +124,81 @@ def robot_diagram(formation: Formation, robot: int) -> Diagram:
 
     Returns:
         The robot, with the input ports that its blocks ask for, of ``phase``, ``reference``, ``spring_j``,
-        ``load``, ``channel_j``, ``sensed`` and ``visible``, and the output ports named in ``ROBOT_OUTPUTS``, and
-        ``ACCELERATION`` where its plant has it.
+        ``load``, ``channel_j``, ``sensed`` and ``visible``, and the output ports named in ``ROBOT_OUTPUTS``;
+        ``ACCELERATION`` where its plant has it, ``DEMANDED`` and ``MEASURED`` where its parts are no wires.
 
     Raises:
         PartError: a part has not the ports that its role asks for.
     """
-    parameters = block_parameters(formation)
+    parameters, path = block_parameters(formation), robot_name(robot)
     builder = DiagramBuilder()
-    plant = _added(builder, "robot", formation, robot, parameters, f"{robot_name(robot)}/plant")
+    plant = _added(builder, "robot", formation, robot, parameters, f"{path}/plant")
     controllers = [
-        _added(builder, role, formation, robot, parameters, f"{robot_name(robot)}/{ROLES[role].block}")
-        for role in CONTROLLERS
+        _added(builder, role, formation, robot, parameters, f"{path}/{ROLES[role].block}") for role in CONTROLLERS
     ]
     control = builder.AddNamedSystem("control", Adder(len(controllers), 2))
+    sensor, computer, actuator = (
+        _added_unless_wire(builder, role, formation, robot, parameters, f"{path}/{role}") for role in WIRES
+    )
+    state, total = plant.GetOutputPort("state"), control.get_output_port()
+    demanded = computer.GetOutputPort("demanded") if computer else total
+    applied = actuator.GetOutputPort("force") if actuator else demanded
+    measured = sensor.GetOutputPort("measured") if sensor else state
+    sources = {
+        "true_state": state, "state": measured, "spring_force": plant.GetOutputPort("spring_force"),
+        "asked": total, "demanded": demanded, "applied": applied, "force": applied,
+    }  # fmt: skip
 
     asked: dict[str, list[System]] = defaultdict(list)
-    for block in (plant, *controllers):
+    for block in (plant, *controllers, *filter(None, (sensor, computer, actuator))):
         for name in _input_names(block):
             asked[name].append(block)
     for k, controller in enumerate(controllers):
         builder.Connect(controller.GetOutputPort("force"), control.get_input_port(k))
         builder.ExportOutput(controller.GetOutputPort("force"), f"{controller.get_name()}_force")
-    for name in ("state", "spring_force"):
-        for block in asked.pop(name, ()):
-            builder.Connect(plant.GetOutputPort(name), block.GetInputPort(name))
     if filters := asked.pop("nominal", ()):
         _connect_nominal(builder, [block for block in controllers if block not in filters], filters)
-    for block in asked.pop("force", ()):
-        builder.Connect(control.get_output_port(), block.GetInputPort("force"))
+    for name, source in sources.items():
+        for block in asked.pop(name, ()):
+            builder.Connect(source, block.GetInputPort(name))
+    _export_inputs(builder, asked)
+    error = controllers[0].GetOutputPort("error")
+    told = {
+        "state": state,
+        "spring_force": sources["spring_force"],
+        "tracking_error": _true_error(builder, error, state, measured) if sensor else error,
+        "control_force": applied,
+    }
+    if plant.HasOutputPort(ACCELERATION):
+        told[ACCELERATION] = plant.GetOutputPort(ACCELERATION)
+    if computer or actuator:
+        told[DEMANDED] = demanded
+    if sensor:
+        told[MEASURED] = measured
+    for name, port in told.items():
+        builder.ExportOutput(port, name)
+    return builder.Build()
+
+
+def _export_inputs(builder: DiagramBuilder, asked: dict[str, list[System]]) -> None:
+    """Make inputs of the diagram of what blocks ask for by the names of their ports, one a name."""
     for name in sorted(asked, key=_port_order):
         for block in asked[name]:
             if block is asked[name][0]:
                 builder.ExportInput(block.GetInputPort(name), name)
             else:
                 builder.ConnectInput(name, block.GetInputPort(name))
-    builder.ExportOutput(plant.GetOutputPort("state"), "state")
-    builder.ExportOutput(plant.GetOutputPort("spring_force"), "spring_force")
-    builder.ExportOutput(controllers[0].GetOutputPort("error"), "tracking_error")
-    builder.ExportOutput(control.get_output_port(), "control_force")
-    if plant.HasOutputPort(ACCELERATION):
-        builder.ExportOutput(plant.GetOutputPort(ACCELERATION), ACCELERATION)
-    return builder.Build()
+
+
+def _true_error(builder: DiagramBuilder, error: OutputPort, state: OutputPort, measured: OutputPort) -> OutputPort:
+    """The tracking error that a robot has, from the one that it takes itself to have: ε + x − x̂."""
+    minus = builder.AddNamedSystem("minus_measured", Gain(-1.0, STATE))
+    true = builder.AddNamedSystem("tracking_error", Adder(3, STATE))
+    builder.Connect(measured, minus.get_input_port())
+    for k, term in enumerate((error, state, minus.get_output_port())):
+        builder.Connect(term, true.get_input_port(k))
+    port: OutputPort = true.get_output_port()
+    return port
 
 
 def _connect_nominal(builder: DiagramBuilder, others: list[System], filters: Iterable[System]) -> None:
@@ -170,10 +214,20 @@ def _added(
     builder: DiagramBuilder, role: str, formation: Formation, owner: int, parameters: Parameters, path: str
 ) -> System:
     """The block of a part, added under the last name of its path; its ports are those of its role."""
+    block = _added_unless_wire(builder, role, formation, owner, parameters, path)
+    if block is None:
+        raise PartError(f"{formation.parts[role][owner].called()}: it has no block")
+    return block
+
+
+def _added_unless_wire(
+    builder: DiagramBuilder, role: str, formation: Formation, owner: int, parameters: Parameters, path: str
+) -> System | None:
+    """The same, or None where the part is a wire."""
     part: Part = formation.parts[role][owner]
     block = part.block(formation, owner, parameters.get(path, ()))
     if block is None:
-        raise PartError(f"{part.called()}: it has no block")
+        return None
     _require_ports(ROLES[role], part, block)
     return builder.AddNamedSystem(path.rsplit("/", maxsplit=1)[-1], block)
 
@@ -208,14 +262,16 @@ def _phase(formation: Formation) -> System:
 
 def _carry(
     builder: DiagramBuilder, phase: System, robots: list[Diagram], formation: Formation, parameters: Parameters
-) -> None:
+) -> System:
     """Wire an object that is a body of its own to the robots that hold it."""
     (part,) = formation.parts["object"]
     block = _added(builder, "object", formation, 0, parameters, "object")
     for name in _input_names(block):
         _, _, number = name.rpartition("_")
-        source = robots[int(number) - 1].GetOutputPort("state") if number.isdecimal() else phase.get_output_port()
-        builder.Connect(source, block.GetInputPort(name))
+        if number.isdecimal():
+            builder.Connect(robots[int(number) - 1].GetOutputPort("state"), block.GetInputPort(name))
+        elif name == "phase":
+            builder.Connect(phase.get_output_port(), block.GetInputPort(name))
     for i, robot in enumerate(robots):
         name, plant = f"grip_force_{i + 1}", formation.parts["robot"][i]
         if not block.HasOutputPort(name):
@@ -225,10 +281,16 @@ def _carry(
         builder.Connect(block.GetOutputPort(name), robot.GetInputPort("load"))
     for name in OBJECT_OUTPUTS:
         builder.ExportOutput(block.GetOutputPort(name), f"object_{name}")
+    return block
 
 
 def _talk(
-    builder: DiagramBuilder, phase: System, robots: list[Diagram], formation: Formation, parameters: Parameters
+    builder: DiagramBuilder,
+    phase: System,
+    robots: list[Diagram],
+    formation: Formation,
+    parameters: Parameters,
+    failing: Failing,
 ) -> None:
     """Wire every channel from the robot that speaks to the one that hears, through the channel's block if any."""
     asked = [set(_input_names(robot)) for robot in robots]
@@ -236,18 +298,25 @@ def _talk(
         name = f"channel_{j + 1}"
         if name not in asked[i]:
             continue
-        state, heard = robots[j].GetOutputPort("state"), robots[i].GetInputPort(name)
-        part: Part = formation.parts["channel"][k]
-        block = part.block(formation, k, parameters.get(channel_name(i, j), ()))
+        own, said = (_believed(robots[k]) for k in (i, j))
+        heard = robots[i].GetInputPort(name)
+        block = _added_unless_wire(builder, "channel", formation, k, parameters, channel_name(i, j))
         if block is None:
-            builder.Connect(state, heard)
+            builder.Connect(failing.heard(i, j, said, own), heard)
             continue
-        _require_ports(ROLES["channel"], part, block)
-        builder.AddNamedSystem(channel_name(i, j), block)
-        builder.Connect(state, block.GetInputPort("sent"))
+        builder.Connect(said, block.GetInputPort("sent"))
+        if "own" in _input_names(block):
+            builder.Connect(own, block.GetInputPort("own"))
+        if block.HasOutputPort("traffic"):
+            builder.ExportOutput(block.GetOutputPort("traffic"), f"{channel_name(i, j)}_traffic")
         if "phase" in _input_names(block):
             builder.Connect(phase.get_output_port(), block.GetInputPort("phase"))
-        builder.Connect(block.GetOutputPort("received"), heard)
+        builder.Connect(failing.heard(i, j, block.GetOutputPort("received"), own), heard)
+
+
+def _believed(robot: Diagram) -> OutputPort:
+    """What a robot takes for its own state, and sends."""
+    return robot.GetOutputPort(MEASURED if robot.HasOutputPort(MEASURED) else "state")
 
 
 def _sense_nearest(

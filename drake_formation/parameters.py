@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pydrake.systems.framework import Context, Diagram
 
 from drake_formation.formation.formation import Formation
+from drake_formation.parts.objects.breaking import breaking_numbers, breaks, looks_every
 from drake_formation.parts.part import Part
 from drake_formation.parts.roles import ROLES
 from drake_formation.scenario import Scenario, resolve
@@ -29,6 +30,11 @@ def robot_name(robot: int) -> str:
 def channel_name(listener: int, speaker: int) -> str:
     """Name of the system of a channel between two robots, from 0."""
     return f"channel_{speaker + 1}_to_{listener + 1}"
+
+
+def heeding_name(listener: int, speaker: int) -> str:
+    """Name of the system by which a robot drops another or follows its slot, from 0."""
+    return f"robot_{listener + 1}_heeds_{speaker + 1}"
 
 
 def placed_parts(formation: Formation) -> Iterator[tuple[str, Part, int]]:
@@ -50,6 +56,7 @@ def block_parameters(formation: Formation) -> Parameters:
         result: Parameters = {"consensus_error": (formation.slots,), "sensing": _sensing(formation)}
         if any(getattr(part.config, "line_of_sight", False) for part in formation.parts["avoidance"]):
             result["line_of_sight"] = formation.obstacles.numbers, formation.footprints
+        result |= _failing(formation)
         for path, part, owner in placed_parts(formation):
             if groups := part.numbers(formation, owner):
                 result[path] = groups
@@ -63,6 +70,17 @@ def _sensing(formation: Formation) -> tuple[Array, ...]:
     obstacles = formation.obstacles.numbers
     margin = max(getattr(part, "margin", 0.0) for part in formation.parts["avoidance"])
     return (obstacles, np.array([margin])) if margin else (obstacles,)
+
+
+def _failing(formation: Formation) -> Parameters:
+    """The numbers of what breaks and fails, as far as it does."""
+    result: Parameters = {"breaking": breaking_numbers(formation)} if breaks(formation) else {}
+    if formation.signals:
+        result["stages"] = tuple(formation.signals.values())
+    for i, j in formation.channels.pairs.tolist():
+        if f"heard_{i + 1}_{j + 1}" in formation.signals:
+            result[heeding_name(i, j)] = (formation.slots[i] - formation.slots[j],)
+    return result
 
 
 def set_parameters(diagram: Diagram, context: Context, scenario: Scenario) -> None:
@@ -79,8 +97,8 @@ def set_parameters(diagram: Diagram, context: Context, scenario: Scenario) -> No
     Raises:
         ScenarioError: the scenario is wrong.
         ValueError: its structure differs from the diagram's (robots, graphs, kinds of parts, sensing, number of
-            obstacles, pieces of the reference, time of the hand-off); that needs a new diagram. Nothing has been
-            written then.
+            obstacles, pieces of the reference, times of the hand-off and of failures); that needs a new diagram.
+            Nothing has been written then.
     """
     formation = resolve(scenario)
     built: Any = getattr(diagram, "structure", None)
@@ -89,8 +107,8 @@ def set_parameters(diagram: Diagram, context: Context, scenario: Scenario) -> No
     if structure(formation) != built:
         raise ValueError(
             f"scenario {scenario.name!r} has another structure than the diagram {diagram.get_name()!r}: robots, "
-            "graphs, kinds of parts, sensing, number of obstacles, pieces of the reference and time of the hand-off "
-            "must be alike, or the diagram built anew"
+            "graphs, kinds of parts, sensing, number of obstacles, pieces of the reference and times of the hand-off "
+            "and of failures must be alike, or the diagram built anew"
         )
     write_parameters(diagram, context, block_parameters(formation))
 
@@ -98,7 +116,7 @@ def set_parameters(diagram: Diagram, context: Context, scenario: Scenario) -> No
 def write_parameters(diagram: Diagram, context: Context, parameters: Parameters) -> None:
     """Write numbers into a Context of a diagram that is known to have their blocks."""
     for path, values in parameters.items():
-        if not _asked_for(diagram, path):
+        if not has_block(diagram, path):
             continue
         block_context = find_block(diagram, path).GetMyMutableContextFromRoot(context)
         for index, value in enumerate(values):
@@ -108,14 +126,22 @@ def write_parameters(diagram: Diagram, context: Context, parameters: Parameters)
 def write_start(diagram: Diagram, context: Context, formation: Formation) -> None:
     """Write the state in which a formation starts into a Context that holds the diagram's defaults."""
     for path, part, owner in placed_parts(formation):
-        state = part.initial_state(formation, owner)
-        if state is not None and _asked_for(diagram, path):
-            find_block(diagram, path).GetMyMutableContextFromRoot(context).SetContinuousState(state)
+        state, memory = part.initial_state(formation, owner), part.initial_discrete_state(formation, owner)
+        if (state is None and memory is None) or not has_block(diagram, path):
+            continue
+        own = find_block(diagram, path).GetMyMutableContextFromRoot(context)
+        if state is not None:
+            own.SetContinuousState(state)
+        for group, values in enumerate(memory or ()):
+            own.SetDiscreteState(group, values)
 
 
-def _asked_for(diagram: Diagram, path: str) -> bool:
-    """Whether a block is in a diagram, which leaves out channels nobody listens to and sensing nobody uses."""
-    return bool(diagram.HasSubsystemNamed(path.split("/", maxsplit=1)[0]))
+def has_block(diagram: Diagram, path: str) -> bool:
+    """Whether there is a block at a path: wires have none, nor have channels nobody hears and sensing nobody uses."""
+    outer, _, inner = path.partition("/")
+    if not diagram.HasSubsystemNamed(outer):
+        return False
+    return not inner or has_block(diagram.GetSubsystemByName(outer), inner)
 
 
 def find_block(diagram: Diagram, path: str) -> Any:
@@ -127,7 +153,7 @@ def find_block(diagram: Diagram, path: str) -> Any:
 
 
 def structure(formation: Formation) -> dict[str, Any]:
-    """What a formation's diagram is made of: the hand-off, who hears and holds whom, and each block's kind and sizes.
+    """What a formation's diagram is made of: times, who hears and holds whom, and each block's kind and sizes.
 
     Diagrams of one structure differ in numbers alone.
     """
@@ -136,6 +162,9 @@ def structure(formation: Formation) -> dict[str, Any]:
         "springs": formation.springs.pairs.tolist(),
         "channels": formation.channels.pairs.tolist(),
         "law": _identity(formation.law),
+        "looks": (formation.hand_off, looks_every(formation)) if breaks(formation) else None,
+        "stages": [stage.time for stage in formation.stages],
+        "signals": {name: np.shape(rows) for name, rows in formation.signals.items()},
     }
     numbers = block_parameters(formation)
     for path, part, owner in placed_parts(formation):

@@ -24,8 +24,10 @@ from drake_formation.analysis.gains.velocity_gain import VelocityGain, velocity_
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.analysis.linear.linearization import NOT_COVERED, LinearFormation, at_rest, linearize
 from drake_formation.analysis.network.delay_margin import DelayMargin, delay_margin
-from drake_formation.analysis.network.loss_margin import LossMargin, loss_margin
-from drake_formation.analysis.network.sampled_data import longest_period
+from drake_formation.analysis.network.intervals import Interval
+from drake_formation.analysis.network.loss_margin import LossMargin, loss_margin, stable_losses
+from drake_formation.analysis.network.sampled_data import SampledLoop, longest_period, stable_periods
+from drake_formation.analysis.network.stable_delays import stable_delays
 from drake_formation.analysis.response.disturbance import Disturbance, disturbance
 from drake_formation.analysis.response.error_criteria import ForceNoise, HandOff, Pulse, Vibration
 from drake_formation.analysis.response.obstacle_effect import ObstacleEffect, obstacle_effect
@@ -57,6 +59,7 @@ __all__ = [
     "ForceNoise",
     "HandOff",
     "IllPosedError",
+    "Interval",
     "LinearFormation",
     "LocalLoop",
     "LossMargin",
@@ -68,6 +71,7 @@ __all__ = [
     "Pulse",
     "Questions",
     "Remedy",
+    "SampledLoop",
     "SmallestDelta",
     "SpringLinearization",
     "StartForce",
@@ -95,6 +99,9 @@ __all__ = [
     "remedies",
     "smallest_delta",
     "spring_linearization",
+    "stable_delays",
+    "stable_losses",
+    "stable_periods",
     "start_force",
     "start_limited_gain",
     "tune",

@@ -40,7 +40,7 @@ def run(
     from drake_formation.lowering.errors import LoweringError
     from drake_formation.measuring import metrics
     from drake_formation.places import PICTURES, OutputError, reserved
-    from drake_formation.simulation import SimulationError
+    from drake_formation.simulation import SimulationError, events
 
     resolved = load_scenario(scenario, overrides=overrides)
     try:
@@ -61,7 +61,7 @@ def run(
     say(_summary(result, figures, checked))
     remark = [str(result.attrs["remark"])] if "remark" in result.attrs else []
     where = f"Results in {written.folder}, pictures in {written.folder / PICTURES}."
-    say("\n".join([*remark, *written.remarks(), where]))
+    say("\n".join([*map(str, events(result)), *remark, *written.remarks(), where]))
 
 
 def _simulate_with_progress(scenario: Scenario, engine: EngineName) -> "xr.Dataset":
@@ -106,6 +106,8 @@ def _summary(result: "xr.Dataset", figures: "Metrics", check: "Check | None") ->
     columns = ("metric", "value", "unit") + (("check differs by",) if check else ())
     table = Table(*columns, title=f"{result.attrs['title']}, transport", caption=caption)
     for name, metric in known().items():
+        if figures[name] is None:  # nothing to measure
+            continue
         table.add_row(
             metric.title, _number(figures[name]), metric.unit, *([_number(check.metrics[name])] if check else [])
         )

@@ -11,10 +11,13 @@ from drake_formation.measuring import Metrics
 from drake_formation.measuring.check import Check
 from drake_formation.places import PICTURES, Kind, Place, Written, written
 from drake_formation.scenario import Scenario, to_yaml
+from drake_formation.simulation.events import events
 from drake_formation.viz.graphviz import write_diagram
 from drake_formation.viz.style import attempt_each
 
 RESULT, SCENARIO, METRICS, FAILURE = "result.nc", "scenario.yaml", "metrics.json", "failure.txt"
+EVENTS = "events"
+"""The key of what happened, beside the metrics."""
 DIAGRAMS = ("diagram.dot", "diagram.svg")
 
 RUN = Kind(RESULT, (METRICS, SCENARIO, PICTURES, *DIAGRAMS, RESULT))
@@ -35,7 +38,8 @@ def write_run(place: Place, scenario: Scenario, result: xr.Dataset, figures: Met
     """
 
     def write(folder: Path) -> dict[str, str]:
-        (folder / METRICS).write_text(json.dumps(figures.to_dict(), indent=2) + "\n", encoding="utf-8")
+        measured = figures.to_dict() | {EVENTS: [event.to_dict() for event in events(result)]}
+        (folder / METRICS).write_text(json.dumps(measured, indent=2) + "\n", encoding="utf-8")
         _write_recorded(folder, scenario, result)
         draw = {name: partial(_draw_diagram, scenario, folder / name) for name in DIAGRAMS}
         return attempt_each(draw) | _draw_figures(folder, result)

@@ -98,20 +98,25 @@ def run_one(run: Run) -> Outcome:
 
 
 def traffic(run: Run) -> tuple[int, float]:
-    """Channels that some law reads, and messages a second over them: as often as a law that is sampled reads them."""
+    """Channels that some law reads, and messages a second over them: as often as packets are sent, or a law reads."""
     from drake_formation.diagram import robot_diagram
     from drake_formation.scenario import resolve
 
     formation = resolve(run.scenario)
     channels, messages = 0, 0.0
+    pairs = formation.channels.pairs.tolist()
     for robot in range(formation.robots):
         diagram = robot_diagram(formation, robot)
-        names = [diagram.get_input_port(k).get_name() for k in range(diagram.num_input_ports())]
-        heard = sum(name.startswith("channel_") for name in names)
-        period = getattr(formation.parts["coordination"][robot].config, "period", None)
-        channels += heard
-        messages += heard / period if period else (np.inf if heard else 0.0)
+        read = getattr(formation.parts["coordination"][robot].config, "period", None)
+        for (listener, speaker), channel in zip(pairs, formation.parts["channel"], strict=True):
+            if listener == robot and diagram.HasInputPort(f"channel_{speaker + 1}"):
+                channels += 1
+                messages += _rate(channel.network.period if getattr(channel, "tells_traffic", False) else read)
     return channels, messages
+
+
+def _rate(period: float | None) -> float:
+    return 1.0 / period if period else np.inf
 
 
 def _thinned(samples: int) -> NDArray[np.intp]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from drake_formation.formation.links import Channels, Edges
 from drake_formation.formation.obstacles import Obstacles
+from drake_formation.formation.stages import Signals, Stage, signals
 
 Array = NDArray[np.float64]
 
@@ -39,6 +40,10 @@ class Formation:
         law: the part by whose law the object's springs act.
         parts: the parts of every role: one a robot, one an edge for ``spring``, one a channel for ``channel``, and one
             in all for ``reference`` and ``object``.
+        seed: of all that is random in it.
+        tolerance: consensus error beyond which it counts as lost (m).
+        stages: what failures of robots make of it, in order of time, the first from the beginning; none where no robot
+            fails.
     """
 
     name: str
@@ -55,6 +60,9 @@ class Formation:
     transport_duration: float
     law: type[Any]
     parts: Mapping[str, tuple[Any, ...]]
+    seed: int = 0
+    tolerance: float = 0.05
+    stages: tuple[Stage, ...] = ()
 
     def __post_init__(self) -> None:
         for array in (self.slots, self.starts, self.centre, self.goal, self.footprints):
@@ -80,6 +88,11 @@ class Formation:
         """When the scenario ends (s)."""
         return self.hand_off + self.transport_duration
 
+    @cached_property
+    def signals(self) -> Signals:
+        """What blocks are told of the stages; see :func:`drake_formation.formation.stages.signals`."""
+        return signals(self.stages, self.slots, self.springs, self.channels) if self.stages else {}
+
     @property
     def has_body(self) -> bool:
         """Whether the carried object is a body of its own, which exerts a load, and not springs between robots."""
@@ -104,6 +117,12 @@ class Formation:
     def start_velocities(self) -> Array:
         """Velocity at which every robot starts (m/s), shape (N, 2)."""
         return np.array([getattr(part.config, "velocity", (0.0, 0.0)) for part in self.parts["robot"]], dtype=float)
+
+    @cached_property
+    def telling_channels(self) -> tuple[int, ...]:
+        """The channels that count packets, by their rows in ``channels.pairs``, so far as somebody listens to them."""
+        parts = self.parts["channel"]
+        return tuple(k for k, part in enumerate(parts) if getattr(part, "tells_traffic", False))
 
     @cached_property
     def rest_lengths(self) -> Array:

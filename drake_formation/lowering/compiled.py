@@ -8,20 +8,32 @@ import numpy as np
 from numpy.typing import NDArray
 from pydrake.systems.framework import Context, Diagram
 
-from drake_formation.lowering import cache
+from drake_formation import machine_code
 from drake_formation.lowering.errors import LoweringError
 from drake_formation.lowering.events import Updates
 from drake_formation.lowering.hoisting import HOISTED
-from drake_formation.lowering.integration import METHODS, Flow, Status, Steps, Trajectory
+from drake_formation.lowering.integration import (
+    METHODS,
+    Events,
+    Flow,
+    Recorder,
+    Status,
+    Steps,
+    Trajectory,
+    no_outputs,
+    through_events,
+)
 from drake_formation.lowering.logs import Logs
-from drake_formation.lowering.schedule import Layout, Table
-from drake_formation.lowering.source import derivatives_source, outputs_source
+from drake_formation.lowering.schedule import Layout
+from drake_formation.lowering.source import derivatives_source, outputs_source, update_source
 from drake_formation.lowering.wiring import Port, Wiring
 from drake_formation.systems.templates import CONVERTING
 
 Array = NDArray[np.float64]
 
 EVERY_STEP = np.zeros(0)
+RARE = 100.0
+"""Updates that lie farther apart (s) are not compiled."""
 
 
 class CompiledDiagram:
@@ -40,14 +52,35 @@ class CompiledDiagram:
         self._layout = Layout(wiring, _state_addresses(diagram, wiring))
         program = self._layout.derivatives()
         self._table = program.table
-        code = cache.load(derivatives_source(program))
+        code = machine_code.load(derivatives_source(program))
         self._prepare: Callable[..., None] = code.prepare
         self._derivatives: Callable[..., None] = code.derivatives
         self._groups_of: dict[Any, list[tuple[str, int, int]]] = {block: [] for block in wiring.blocks.values()}
         for (block, space, group), address in self._layout.groups.items():
             if space not in ("state", HOISTED):
                 self._groups_of[block].append((space, group, address))
-        self._outputs: dict[tuple[str, ...], tuple[Callable[..., None], Table, Table]] = {}
+        self._recorders: dict[tuple[str, ...], Recorder] = {}
+        self._events = self._compiled_events()
+
+    def _compiled_events(self) -> Events | None:
+        """The updates that are carried out in compiled code; None where there are none.
+
+        Of ticks that are rare all are left to Drake, which is quicker than compiling; so are those of blocks that
+        Drake's symbols cannot follow. Logs of every step need the whole Context at every step.
+        """
+        if self.logs.every_step:
+            return None
+        due = {
+            ticks: blocks
+            for ticks, blocks in self.updates.ticks.items()
+            if ticks.period < RARE and all(self._layout.can_update(block) for block in blocks)
+        }
+        if not due:
+            return None
+        program = self._layout.updates(list(due.values()))
+        code = machine_code.load(update_source(program))
+        self._updated = [block for blocks in due.values() for block in blocks]
+        return Events(list(due), self._prepare, code.update, program.table)
 
     def read(self, context: Context, *, wired: bool = False) -> Array:
         """Values of a Context of the diagram: its parameters, discrete state and inputs, and what follows from them.
@@ -116,14 +149,16 @@ class CompiledDiagram:
         Raises:
             LoweringError: a port depends on a block that cannot be compiled.
         """
-        code, table, addresses = self._compiled_outputs(tuple(names))
+        recorder = self._recorder(tuple(names))
         memory = np.zeros(self._layout.size)
         memory[: len(values)] = values
-        result = np.empty((len(times), len(addresses)))
-        code(np.ascontiguousarray(times), np.ascontiguousarray(states), memory, table, addresses, result)
+        return self.named(names, recorder.at(times, states, memory))
+
+    def named(self, names: Sequence[str], recorded: Array) -> dict[str, Array]:
+        """What was recorded, by the names of the ports."""
         sizes = [self.diagram.GetOutputPort(name).size() for name in names]
-        parts = np.split(result, np.cumsum(sizes)[:-1], axis=1)
-        return dict(zip(names, parts, strict=True))
+        parts = np.split(recorded, np.cumsum(sizes)[:-1], axis=1)
+        return dict(zip(names, parts, strict=True)) if names else {}
 
     def integrate(
         self,
@@ -135,6 +170,7 @@ class CompiledDiagram:
         max_step: float = 0.1,
         adaptive: bool = True,
         at: Array = EVERY_STEP,
+        record: Sequence[str] = (),
         updated: bool = False,
         wired: bool = False,
     ) -> Iterator[Trajectory]:
@@ -153,6 +189,7 @@ class CompiledDiagram:
             adaptive: control the step; else every step is the largest.
             at: times to sample at (s), rising, from the Context's time to the end; where empty every accepted step is a
                 sample. At the time of an update the sample is taken after it, at the end before it.
+            record: names of vector-valued output ports of the diagram, which every sample holds one after the other.
             updated: whether the updates due at the start have been carried out.
             wired: as for :meth:`read`.
 
@@ -162,7 +199,7 @@ class CompiledDiagram:
 
         Raises:
             ValueError: there is no such method, or the times do not rise or are not within the integration.
-            LoweringError: as for :meth:`read`.
+            LoweringError: as for :meth:`read` and :meth:`outputs`.
         """
         if method not in METHODS:
             raise ValueError(f"no method {method!r}; there are {', '.join(METHODS)}")
@@ -174,30 +211,50 @@ class CompiledDiagram:
             self._require_wired(context)
         self.logs.record_step(context)
         self.logs.record_due(context)
+        events = self._events if method == "dormand_prince" else None
+        here = events.ticks if events else ()
+        recorder = self._recorder(tuple(record))
         while (begin := context.get_time()) < end:
-            if not updated:
+            if not updated and (not events or self.updates.due(begin, here)):
                 self.updates.carry_out(context)
+                updated = True
+            flow = Flow(self._derivatives, self._table, self.read(context, wired=True), recorder)
+            stop = self.logs.after(begin, self.updates.after(begin, end, here))
+            wanted, every = at[(at >= begin) & ((at < stop) | (stop == end) & (at <= end))], not len(at)
+            if events:
+                pieces = through_events(flow, events, begin, stop, state, steps, wanted, every, updated)
+            else:
+                pieces = METHODS[method](flow, begin, stop, state, steps, wanted, every)
             updated = False
-            flow = Flow(self._derivatives, self._table, self.read(context, wired=True))
-            stop = self.logs.after(begin, self.updates.after(begin, end))
-            wanted = at[(at >= begin) & ((at < stop) | (stop == end) & (at <= end))]
-            for piece in METHODS[method](flow, begin, stop, state, steps, wanted, not len(at)):
+            for piece in pieces:
                 for time, sample in zip(piece.times, piece.states, strict=True) if self.logs.every_step else ():
                     context.SetTimeAndContinuousState(time, sample)
                     self.logs.record_step(context)
                 context.SetTimeAndContinuousState(piece.reached, state)
+                if events:
+                    self._write_discrete(context, flow.values)
                 self.logs.record_due(context)
                 done = piece.status == Status.DONE
                 yield replace(piece, status=Status.FULL) if done and stop < end else piece
             if not done:
                 return
 
-    def _compiled_outputs(self, names: tuple[str, ...]) -> tuple[Callable[..., None], Table, Table]:
-        with CONVERTING:
-            return self._known_outputs(names)
+    def _write_discrete(self, context: Context, values: Array) -> None:
+        """Write the discrete state of the blocks that compiled code updates into a Context."""
+        for block in self._updated:
+            own = block.GetMyMutableContextFromRoot(context)
+            for space, group, address in self._groups_of[block]:
+                if space == "discrete":
+                    own.SetDiscreteState(group, values[address : address + self._layout.width(block, group)])
 
-    def _known_outputs(self, names: tuple[str, ...]) -> tuple[Callable[..., None], Table, Table]:
-        if names not in self._outputs:
+    def _recorder(self, names: tuple[str, ...]) -> Recorder:
+        if not names:
+            return Recorder(no_outputs(), self._table, np.zeros(0, dtype=np.uint32))
+        with CONVERTING:
+            return self._known_recorder(names)
+
+    def _known_recorder(self, names: tuple[str, ...]) -> Recorder:
+        if names not in self._recorders:
             ports = [self.diagram.GetOutputPort(name) for name in names]
             sources: list[Port] = [self._wiring.leaf(self.diagram, int(port.get_index())) for port in ports]
             program = self._layout.outputs(sources)
@@ -207,9 +264,9 @@ class CompiledDiagram:
                 for address in [self._layout.address(*source)]
                 for k in range(port.size())
             ]
-            code = cache.load(outputs_source(program)).outputs
-            self._outputs[names] = code, program.table, np.array(addresses, dtype=np.uint32)
-        return self._outputs[names]
+            code = machine_code.load(outputs_source(program)).outputs
+            self._recorders[names] = Recorder(code, program.table, np.array(addresses, dtype=np.uint32))
+        return self._recorders[names]
 
 
 def lower(diagram: Diagram) -> CompiledDiagram:
@@ -217,7 +274,7 @@ def lower(diagram: Diagram) -> CompiledDiagram:
 
     Its blocks are traced with Drake's symbolic scalar, so they must convert to it; each kind of block becomes one
     compiled function that runs over all its blocks. The code is kept on disk:
-    see :mod:`drake_formation.lowering.cache`.
+    see :mod:`drake_formation.machine_code`.
 
     What a compiled run does is what Drake's Simulator does, with one difference: every periodic update is carried out,
     also where Drake misses one by rounding (see :mod:`drake_formation.lowering.ticks`). What it would leave out is

@@ -41,7 +41,8 @@ WINDOWS = 64
 BETWEEN = 0.381966
 """A share of a period, and a time (s), that hardly any period divides."""
 INPUT, APART = 0.5, 0.0618034
-"""The first number of every input of a block that runs by itself, and how far the next ones are from each other."""
+"""The first number that a block's inputs have where it runs by itself; how far the next one is, in a port and from
+port to port."""
 
 Counts = tuple[int, int, int]
 """Publish events, discrete updates and unrestricted updates that a Simulator has carried out."""
@@ -162,7 +163,7 @@ def _alone(block: Any, time: float, step: float) -> Simulator:
     for k in range(block.num_input_ports()):
         port = block.get_input_port(k)
         if port.get_data_type() == PortDataType.kVectorValued:
-            port.FixValue(context, INPUT + APART * np.arange(port.size()))
+            port.FixValue(context, INPUT + APART * (k + np.arange(port.size())))  # no two robots in one place
     return simulator
 
 

@@ -1,6 +1,6 @@
 """The Dormand-Prince 5(4) pair with step control and dense output, compiled (Hairer, Nørsett & Wanner, Sec. II.4-6).
 
-This file is compiled through :mod:`drake_formation.lowering.cache`, once for all diagrams: the right-hand side is an
+This file is compiled through :mod:`drake_formation.machine_code`, once for all diagrams: the right-hand side is an
 argument. The error norm is Drake's: the largest absolute error of any state in one step, which the step control keeps
 below the accuracy. The last stage of an accepted step is the first of the next.
 """

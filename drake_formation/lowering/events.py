@@ -1,5 +1,6 @@
 """The updates of a diagram: when Drake changes discrete state, and refusing what else it may change."""
 
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
@@ -13,10 +14,13 @@ from drake_formation.lowering.wiring import Wiring
 
 
 class Updates:
-    """The periodic discrete updates of a diagram, carried out between compiled integrations.
+    """The periodic discrete updates of a diagram, carried out by Drake between compiled integrations.
 
     Args:
         wiring: the diagram's blocks.
+
+    Attributes:
+        ticks: the blocks that are updated, by when they are.
 
     Raises:
         LoweringError: a block has abstract state, abstract parameters or witness functions, or it is one of C++ with
@@ -25,7 +29,7 @@ class Updates:
     """
 
     def __init__(self, wiring: Wiring) -> None:
-        self._updates: dict[Ticks, list[Any]] = {}
+        self.ticks: dict[Ticks, list[Any]] = {}
         for path, block in wiring.blocks.items():
             context = block.CreateDefaultContext()
             timing = block.GetUniquePeriodicDiscreteUpdateAttribute()
@@ -41,15 +45,19 @@ class Updates:
                     raise LoweringError(path, "it has discrete state without a single periodic update of it")
             if timing:
                 ticks = Ticks(timing.offset_sec(), timing.period_sec())
-                self._updates.setdefault(ticks, []).append(block)
+                self.ticks.setdefault(ticks, []).append(block)
 
-    def after(self, time: float, end: float) -> float:
-        """The next time after this one at which there is an update, at most the end."""
-        return min([end, *(ticks.after(time) for ticks in self._updates)])
+    def after(self, time: float, end: float, but: Collection[Ticks] = ()) -> float:
+        """The next time after this one at which there is an update, except at some ticks; at most the end."""
+        return min([end, *(ticks.after(time) for ticks in self.ticks if ticks not in but)])
+
+    def due(self, time: float, but: Collection[Ticks] = ()) -> bool:
+        """Whether there is an update at a time, except at some ticks."""
+        return any(ticks.is_one(time) for ticks in self.ticks if ticks not in but)
 
     def carry_out(self, context: Context) -> None:
         """Carry out the updates that are due at the Context's time; all see what was there before any of them."""
-        due = [block for ticks, blocks in self._updates.items() if ticks.is_one(context.get_time()) for block in blocks]
+        due = [block for ticks, blocks in self.ticks.items() if ticks.is_one(context.get_time()) for block in blocks]
         updated = [(block, _updated(block, block.GetMyContextFromRoot(context))) for block in due]
         for block, groups in updated:
             own = block.GetMyMutableContextFromRoot(context)

@@ -7,7 +7,7 @@ The error of two steps is taken from one of twice the length, for what makes it,
 step, escapes the estimates that an embedded method gives for little more. All lengths are halves of halves of one,
 for which the matrix functions are made beforehand.
 
-This file is compiled through :mod:`drake_formation.lowering.cache`, once for all diagrams.
+This file is compiled through :mod:`drake_formation.machine_code`, once for all diagrams.
 """
 
 import math

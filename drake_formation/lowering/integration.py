@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from drake_formation.lowering import cache
+from drake_formation import machine_code
 from drake_formation.lowering.phi import phi_functions
 from drake_formation.lowering.schedule import Table
+from drake_formation.lowering.ticks import Ticks
 
 Array = NDArray[np.float64]
 
@@ -45,7 +46,7 @@ class Trajectory:
     Attributes:
         times: sample times (s), shape (samples,).
         states: shape (samples, states).
-        values: what :meth:`CompiledDiagram.read` gave, as it was meanwhile.
+        recorded: what was to be recorded at the samples, shape (samples, numbers).
         status: ``DONE``, or why it ends early.
         reached: where the integration stands (s).
         evaluations: derivatives evaluated.
@@ -54,11 +55,52 @@ class Trajectory:
 
     times: Array
     states: Array
-    values: Array
+    recorded: Array
     status: Status
     reached: float
     evaluations: int
     rejected: int
+
+
+@dataclass(frozen=True)
+class Recorder:
+    """What is recorded at every sample.
+
+    Attributes:
+        outputs: ``outputs(times, states, values, table, addresses, recorded)``.
+        table: its table.
+        addresses: where the numbers stand in its memory.
+    """
+
+    outputs: Callable[..., None]
+    table: Table
+    addresses: Table
+
+    def at(self, times: Array, states: Array, values: Array) -> Array:
+        """The numbers at some samples, shape (samples, numbers), with some memory, which is left as it is."""
+        result = np.empty((len(times), len(self.addresses)))
+        if len(self.addresses):
+            memory = values.copy()
+            arrays = np.ascontiguousarray(times), np.ascontiguousarray(states)
+            self.outputs(*arrays, memory, self.table, self.addresses, result)
+        return result
+
+
+@dataclass(frozen=True)
+class Events:
+    """The updates of a diagram as compiled code.
+
+    Attributes:
+        ticks: when they are.
+        prepare: ``prepare(values, table)``, with the table of the derivatives.
+        update: ``update(t, values, update_table, due)``.
+        table: its table.
+    """
+
+    ticks: list[Ticks]
+    prepare: Callable[..., None]
+    update: Callable[..., None]
+    table: Table
 
 
 @dataclass(frozen=True)
@@ -69,11 +111,13 @@ class Flow:
         derivatives: ``derivatives(t, x, values, table, dx)``.
         table: its table.
         values: its memory.
+        recorder: what is recorded.
     """
 
     derivatives: Callable[..., None]
     table: Table
     values: Array
+    recorder: Recorder
 
     def jacobian(self, time: float, state: Array) -> Array:
         """∂f/∂x by central differences, shape (states, states); zero where f is not finite."""
@@ -114,7 +158,7 @@ def dormand_prince(
     flow: Flow, begin: float, end: float, state: Array, steps: Steps, at: Array, every: bool
 ) -> Iterator[Trajectory]:
     """The Dormand-Prince 5(4) pair with dense output; see :mod:`drake_formation.lowering.dormand_prince`."""
-    integrate = _compiled("dormand_prince")
+    integrate = _compiled("dormand_prince").integrate
     clock = np.array([begin, 0.1 * steps.longest, 1e-4])  # Drake starts with a tenth of the largest step too
     wanted = np.zeros(0) if every else (at if len(at) else np.array([np.inf]))
     status = Status.FULL
@@ -125,7 +169,55 @@ def dormand_prince(
             steps.adaptive, wanted, times, states,
         )  # fmt: skip
         status = Status(code)
-        yield Trajectory(times[:count], states[:count], flow.values, status, clock[0], evaluations, rejected)
+        recorded = flow.recorder.at(times[:count], states[:count], flow.values)
+        yield Trajectory(times[:count], states[:count], recorded, status, clock[0], evaluations, rejected)
+
+
+def through_events(
+    flow: Flow,
+    events: Events,
+    begin: float,
+    end: float,
+    state: Array,
+    steps: Steps,
+    at: Array,
+    every: bool,
+    updated: bool,
+) -> Iterator[Trajectory]:
+    """The Dormand-Prince pair through the updates of a diagram; see :mod:`drake_formation.lowering.event_loop`.
+
+    Args:
+        flow: right-hand side; the discrete state in its memory goes along.
+        events: the updates.
+        begin: where to start (s).
+        end: where to stop (s); updates due then are not carried out.
+        state: goes along.
+        steps: how to step.
+        at: times to sample at (s).
+        every: sample every step instead.
+        updated: whether the updates due at the start have been carried out.
+    """
+    clock = np.array([begin, 0.1 * steps.longest, 1e-4])
+    offsets, periods = (np.array([getattr(ticks, name) for ticks in events.ticks]) for name in ("offset", "period"))
+    counts = np.array([ticks.first(begin) for ticks in events.ticks])
+    wanted = np.zeros(0) if every else (at if len(at) else np.array([np.inf]))
+    recorder, status = flow.recorder, Status.FULL
+    while status == Status.FULL:
+        times, states = _room(CHUNK if every else len(wanted), state)
+        recorded = np.empty((len(times), len(recorder.addresses)))
+        code, count, evaluations, rejected = _compiled("event_loop").run(
+            _compiled("dormand_prince").integrate, flow.derivatives, events.prepare, events.update, recorder.outputs,
+            clock, end, state, flow.values, flow.table, events.table, recorder.table, recorder.addresses, offsets,
+            periods, counts, updated, steps.accuracy, steps.longest, steps.adaptive, wanted, times, states, recorded,
+        )  # fmt: skip
+        status, updated = Status(code), False
+        yield Trajectory(times[:count], states[:count], recorded[:count], status, clock[0], evaluations, rejected)
+
+
+def no_outputs() -> Callable[..., None]:
+    """What records nothing."""
+    nothing: Callable[..., None] = _compiled("event_loop").nothing
+    return nothing
 
 
 def exponential(
@@ -142,7 +234,9 @@ def exponential(
         yield from dormand_prince(flow, begin, end, state, steps, at, every)
         return
     if len(at) and at[0] == begin:
-        yield Trajectory(at[:1], state[None].copy(), flow.values, Status.FULL, begin, evaluations=0, rejected=0)
+        start = at[:1], state[None].copy()
+        recorded = flow.recorder.at(*start, flow.values)
+        yield Trajectory(*start, recorded, Status.FULL, begin, evaluations=0, rejected=0)
     wanted = at[at > begin]
     targets = wanted if len(wanted) and wanted[-1] == end else np.append(wanted, end)
     clock = np.array([begin, FIRST_LEVEL])
@@ -162,7 +256,7 @@ def exponential(
 
 def _shortened(piece: Trajectory) -> Trajectory:
     """A piece without its last sample: the end, which nobody asked for."""
-    return replace(piece, times=piece.times[:-1], states=piece.states[:-1])
+    return replace(piece, times=piece.times[:-1], states=piece.states[:-1], recorded=piece.recorded[:-1])
 
 
 def _exponential_piece(
@@ -173,15 +267,16 @@ def _exponential_piece(
     jacobian = flow.jacobian(clock[0], state)
     functions = phi_functions(pair * jacobian, LEVELS)
     times, states = _room(CHUNK if every else len(stops), state)
-    code, count, evaluations, rejected = _compiled("exponential")(
+    code, count, evaluations, rejected = _compiled("exponential").integrate(
         flow.derivatives, clock, stops, state, flow.values, flow.table, jacobian, functions, pair, steps.accuracy,
         steps.adaptive, every, times, states,
     )  # fmt: skip
     status = Status(code)
     jump = status == Status.STEP_TOO_SMALL
     evaluations += 2 * len(state)
+    recorded = flow.recorder.at(times[:count], states[:count], flow.values)
     yield Trajectory(
-        times[:count], states[:count], flow.values, Status.FULL if jump else status, clock[0], evaluations, rejected
+        times[:count], states[:count], recorded, Status.FULL if jump else status, clock[0], evaluations, rejected
     )
     if jump:
         stop = stops[stops > clock[0]][0]
@@ -211,6 +306,6 @@ def _evenly_spaced(begin: float, stops: Array) -> Iterator[tuple[float, Array]]:
 
 @functools.cache
 def _compiled(method: str) -> Any:
-    """A compiled integrator, which is the same for all diagrams."""
+    """A compiled module that is the same for all diagrams."""
     source = Path(__file__).with_name(f"{method}.py").read_text(encoding="utf-8")
-    return cache.load(source).integrate
+    return machine_code.load(source)

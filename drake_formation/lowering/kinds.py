@@ -8,7 +8,7 @@ from drake_formation.lowering.emit import Kernel, emit
 from drake_formation.lowering.errors import LoweringError
 from drake_formation.lowering.expressions import Graph, Leaf, UnsupportedOperationError
 from drake_formation.lowering.hoisting import hoist
-from drake_formation.lowering.trace import TracedBlock
+from drake_formation.lowering.trace import UPDATE, TracedBlock
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Kind:
         graph: the expressions' nodes.
         roots: the nodes of its values.
         inputs: number of input ports of such a block.
-        function: the output port that computes it, or ``DERIVATIVES``.
+        function: the output port that computes it, ``DERIVATIVES`` or ``UPDATE``.
     """
 
     graph: Graph
@@ -109,7 +109,7 @@ class KindTable:
             self._quiet.add(family)
 
     def find(self, block: TracedBlock, function: int) -> Kind:
-        """The kind of a block's output port or time derivatives.
+        """The kind of a block's output port, time derivatives or update.
 
         Raises:
             LoweringError: the block cannot be traced, or does what cannot be compiled.
@@ -124,9 +124,11 @@ class KindTable:
 
     def _trace(self, block: TracedBlock, function: int, family: Any) -> Kind:
         expressions = block.trace(function)
+        if function == UPDATE and not _alike(expressions, block.trace(function)):
+            raise LoweringError(block.path, "its update is not the same twice")
         known = self._traced.setdefault(family, [])
         for others, kind in known:
-            if all(a.EqualTo(b) for a, b in zip(others, expressions, strict=True)):
+            if _alike(others, expressions):
                 return kind
         graph = Graph(block.symbols.leaf_of)
         try:
@@ -135,3 +137,7 @@ class KindTable:
             raise LoweringError(block.path, f"it uses {error}, which has no compiled counterpart") from error
         known.append((expressions, kind))
         return kind
+
+
+def _alike(some: list[Any], others: list[Any]) -> bool:
+    return all(a.EqualTo(b) for a, b in zip(some, others, strict=True))

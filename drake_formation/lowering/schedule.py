@@ -1,6 +1,6 @@
 """Where every number lives in memory, and in which order the kernels run over it."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,8 +13,10 @@ from drake_formation.lowering.errors import LoweringError
 from drake_formation.lowering.expressions import Leaf
 from drake_formation.lowering.hoisting import HOISTED, is_fixed
 from drake_formation.lowering.kinds import Kind, KindTable
-from drake_formation.lowering.trace import DERIVATIVES, SymbolTable, TracedBlock
+from drake_formation.lowering.law_kernels import PLACING, law_kernel
+from drake_formation.lowering.trace import DERIVATIVES, UPDATE, SymbolTable, TracedBlock
 from drake_formation.lowering.wiring import Port, Wiring
+from drake_formation.systems.sampled_law import SampledLaw
 
 Table = NDArray[np.uint32]
 Task = tuple[int, Kernel, list[int]] | None
@@ -45,14 +47,35 @@ class Program:
     Attributes:
         once: source of the kernels that write what is fixed into the memory.
         outputs: source of the kernels that write outputs into the memory.
-        derivatives: source of the kernels that write time derivatives; they run last.
+        last: source of the kernels that run last: those that write time derivatives, or those of updates.
+        ticks: of an update, which of the ticks each of the last kernels belongs to.
         table: for each kernel the address of its list of rows and their number; then the lists; then the rows.
     """
 
     once: list[str]
     outputs: list[str]
-    derivatives: list[str]
+    last: list[str]
+    ticks: list[int]
     table: Table
+
+
+@dataclass(frozen=True)
+class Update:
+    """How the discrete state of a block is updated.
+
+    Attributes:
+        task: writes the new state aside.
+        sources: what the update reads.
+        aside: where the new state is written.
+        place: where the state is.
+        size: how many numbers it has.
+    """
+
+    task: Task
+    sources: list[Job]
+    aside: int
+    place: int
+    size: int
 
 
 class Layout:
@@ -95,6 +118,10 @@ class Layout:
         """Address of an output port of a block."""
         return self._output(block, port).address
 
+    def width(self, block: Any, group: int) -> int:
+        """Size of a group of a block's discrete state."""
+        return self.blocks[block].sizes[2][group]
+
     def derivatives(self) -> Program:
         """What computes the time derivatives of all continuous state."""
         jobs = []
@@ -103,6 +130,49 @@ class Layout:
                 kind = self._kinds.find(traced, DERIVATIVES)
                 jobs.append(self._job(block, kind, self.groups[block, "state", 0]))
         return self._program(self._needed(jobs), jobs)
+
+    def can_update(self, block: Any) -> bool:
+        """Whether the update of a block can be compiled: it has a law of plain arrays, or can be traced."""
+        if getattr(block, "sampled_law", None) is not None:
+            return True
+        try:
+            self._kinds.find(self.blocks[block], UPDATE)
+        except LoweringError:
+            return False
+        return True
+
+    def updates(self, due: Sequence[Sequence[Any]]) -> Program:
+        """What carries out updates: first aside, for all see what was there before, and then puts them in place.
+
+        Args:
+            due: for each of the ticks the blocks that are updated then.
+        """
+        carried, placed, read = [], [], []
+        for blocks in due:
+            updates = [self._update(block) for block in blocks]
+            carried.append(_Steps([update.task for update in updates]))
+            placed.append(_Steps([(0, PLACING, [update.aside, update.place, update.size]) for update in updates]))
+            read += [job for update in updates for job in update.sources]
+        needed = {id(job): job for job in [*read, *self._needed(read)] if not job.kind.copied}
+        return self._program(list(needed.values()), [], [*carried, *placed])
+
+    def _update(self, block: Any) -> Update:
+        """How a block is updated: by its law of plain arrays, or as traced."""
+        traced = self.blocks[block]
+        size, place = sum(traced.sizes[2]), self.groups[block, "discrete", 0]
+        aside = self._allocate(size)
+        law: SampledLaw | None = getattr(block, "sampled_law", None)
+        if law is None:
+            job = self._job(block, self._kinds.find(traced, UPDATE), aside)
+            return Update(self._task(job, job.kind.kernel, aside), self._sources(block, job.kind), aside, place, size)
+        inputs, _, _, parameters = traced.sizes
+        sources = [self._output(*source) for port in range(len(inputs)) if (source := self._wiring.source(block, port))]
+        self.used_inputs |= {(block, port) for port in range(len(inputs)) if (block, "input", port) in self.groups}
+        gathered, numbers = self._allocate(sum(inputs)), self.groups.get((block, "parameter", 0), 0)
+        row = [aside, place, size, numbers, sum(parameters), gathered]
+        for port, width in enumerate(inputs):
+            row += [self._leaf_address(block, Leaf("input", port, 0)), width]
+        return Update((0, law_kernel(law, len(inputs)), row), sources, aside, place, size)
 
     def outputs(self, ports: Iterable[Port]) -> Program:
         """What computes some output ports."""
@@ -165,12 +235,20 @@ class Layout:
                     waiting.append(source)
         return [job for job in needed.values() if not job.kind.copied]
 
-    def _program(self, outputs: list[Job], derivatives: list[Job]) -> Program:
+    def _program(self, outputs: list[Job], derivatives: list[Job], updates: "Sequence[_Steps]" = ()) -> Program:
+        """Outputs, then derivatives or updates; of these the steps of all ticks one way and then the other."""
         unique = list({id(job): job for job in outputs}.values())
         once = _Steps([*(self._once(job) for job in [*unique, *derivatives])])
         always = _Steps([self._always(job) for job in unique if not job.fixed])
-        last = _Steps([self._always(job) for job in derivatives])
-        return Program(once.bodies, always.bodies, last.bodies, _packed([*once.rows, *always.rows, *last.rows]))
+        last = updates or [_Steps([self._always(job) for job in derivatives])]
+        ticks = len(updates) // 2
+        return Program(
+            once.bodies,
+            always.bodies,
+            [body for steps in last for body in steps.bodies],
+            [number % ticks for number, steps in enumerate(last) for _ in steps.bodies] if ticks else [],
+            _packed([*once.rows, *always.rows, *(rows for steps in last for rows in steps.rows)]),
+        )
 
     def _once(self, job: Job) -> Task:
         """What a job computes once: everything, a part, or nothing."""

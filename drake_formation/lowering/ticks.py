@@ -27,6 +27,13 @@ class Ticks:
             count += 1
         return tick
 
+    def first(self, time: float) -> int:
+        """The number of the first tick that is not before a time."""
+        count = self._nearby(time)
+        while self._tick(count) < time:
+            count += 1
+        return count
+
     def is_one(self, time: float) -> bool:
         """Whether a time is a tick."""
         first = self._nearby(time)

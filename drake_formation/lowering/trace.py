@@ -12,8 +12,8 @@ from drake_formation.lowering.declared import recorded, require_known_events
 from drake_formation.lowering.errors import LoweringError
 from drake_formation.lowering.expressions import Leaf
 
-DERIVATIVES = -1
-"""What stands for the time derivatives where otherwise the index of an output port stands."""
+DERIVATIVES, UPDATE = -1, -2
+"""What stands for the time derivatives, and for the periodic update, where else the index of an output port stands."""
 
 Sizes = tuple[tuple[int, ...], int, tuple[int, ...], tuple[int, ...]]
 """Sizes of a block's inputs (−1: abstract), continuous state, discrete groups and numeric parameter groups."""
@@ -97,20 +97,23 @@ class TracedBlock:
         return self._symbols.of(self.sizes)
 
     def trace(self, function: int) -> list[Any]:
-        """Expressions of an output port or of the time derivatives.
+        """Expressions of an output port, of the time derivatives or of the discrete state after its update.
 
         Args:
-            function: index of the output port, or ``DERIVATIVES``.
+            function: index of the output port, ``DERIVATIVES`` or ``UPDATE``.
 
         Raises:
             LoweringError: Drake or the block's own code cannot do that in symbols.
         """
         system, context = self._symbolic
-        if function != DERIVATIVES and _vector_size(system.get_output_port(function)) < 0:
+        if function >= 0 and _vector_size(system.get_output_port(function)) < 0:
             raise LoweringError(self.path, "an output port of it that is needed is abstract")
         try:
             if function == DERIVATIVES:
                 values = system.EvalTimeDerivatives(context).CopyToVector()
+            elif function == UPDATE:
+                after = system.EvalUniquePeriodicDiscreteUpdate(context)
+                values = np.concatenate([after.get_vector(k).CopyToVector() for k in range(after.num_groups())])
             else:
                 values = system.get_output_port(function).Eval(context)
         except Exception as error:

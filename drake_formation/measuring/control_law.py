@@ -1,19 +1,22 @@
 """The control forces on all robots along a motion, by the laws of the blocks, many times at once."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.formation.formation import Formation
 from drake_formation.parameters import block_parameters, robot_name
+from drake_formation.parts.actuators.ideal import IdealActuator
 from drake_formation.parts.avoidance.khatib import Khatib, avoidance_force
-from drake_formation.parts.channels.ideal import IdealChannel
+from drake_formation.parts.computers.continuous import ContinuousComputer
 from drake_formation.parts.coordination.consensus import LAWS, Consensus
 from drake_formation.parts.part import Part
 from drake_formation.parts.references.set_point import SetPointReference
 from drake_formation.parts.references.trajectory import Motion as MovingReference
 from drake_formation.parts.references.trajectory import polynomial_motion
+from drake_formation.parts.sensors.ideal import IdealSensor
 from drake_formation.parts.tracking.lqr import Lqr, feed_forward_force, tracking_force
 from drake_formation.systems.sensing import nearest
 
@@ -26,7 +29,9 @@ KNOWN: dict[str, tuple[type[Part], ...]] = {
     "coordination": (Consensus,),
     "avoidance": (Khatib,),
     "reference": (SetPointReference, MovingReference),
-    "channel": (IdealChannel,),
+    "sensor": (IdealSensor,),
+    "computer": (ContinuousComputer,),
+    "actuator": (IdealActuator,),
 }
 """The parts whose laws are here; all are functions of time and the robots' states alone."""
 
@@ -35,20 +40,19 @@ def control_law(formation: Formation, times: Array, recorded: Array) -> Law:
     """The control u of every robot during transport (paper, Eq. 8), as a function of time and state.
 
     Where a robot has parts of other kinds, which may have states of their own, where robots remember what they sense,
-    keep away from each other or have footprints, or where obstacles are no circles or move, it is read off what was
-    recorded.
+    keep away from each other, have footprints or fail, or where obstacles are no circles or move, it is read off what
+    was recorded: on the straight line between two samples.
 
     Args:
         formation: what ran.
         times: when it was recorded (s), shape (m,).
-        recorded: the control forces then (N), shape (m, N, 2).
+        recorded: the control forces that acted on the robots then (N), shape (m, N, 2).
     """
     known = all(isinstance(part, kinds) for role, kinds in KNOWN.items() for part in formation.parts[role])
-    fields = formation.parts["avoidance"]
-    if known and formation.obstacles.are_circles and not formation.footprints.any():
-        remember = (part.margin or part.config.robots or part.config.line_of_sight for part in fields)
-        if not any(remember):
-            return ControlLaw(formation)
+    wired = all(getattr(channel, "is_wire", False) for channel in formation.parts["channel"])
+    simple = known and wired and not formation.stages and not formation.footprints.any()
+    if simple and formation.obstacles.are_circles and not any(map(_is_more, formation.parts["avoidance"])):
+        return ControlLaw(formation)
 
     def between(at: Array, position: Array, _velocity: Array) -> Array:
         columns = recorded.reshape(len(times), -1).T
@@ -56,6 +60,12 @@ def control_law(formation: Formation, times: Array, recorded: Array) -> Law:
         return np.stack(read, axis=-1).reshape(position.shape)
 
     return between
+
+
+def _is_more(field: Part) -> bool:
+    """Whether a field around obstacles goes by more than where robots and obstacles are."""
+    config: Any = field.config
+    return bool(getattr(field, "margin", 0.0) or config.robots or config.line_of_sight)
 
 
 class ControlLaw:

@@ -86,6 +86,15 @@ class Metrics(Mapping[str, Value]):
         max_object_strain: largest strain of an object that is a body of its own; None where it is springs.
         rms_force_n: root mean square of the control forces over robots and time (N).
         energy_j: ∫ Σ |u · v| dt of the control forces, driving and braking (J).
+        outside_tolerance_s: how long a robot's consensus error is above ``transport.tolerance`` (s).
+        messages_sent: packets sent over all channels; None, as the following, where no channel carries packets.
+        messages_delivered: packets that arrived and were looked at.
+        messages_lost: packets that were lost.
+        messages_late: packets that came too late to be used.
+        messages_overtaken: packets that a later one overtook.
+        bit_rate_bps: bits sent a second.
+        mean_age_s: mean age of information over time and channels (s).
+        peak_age_s: largest age of information of any channel (s).
         settling_time_s: time from the hand-off until every robot stays near its slot at the goal (s).
     """
 

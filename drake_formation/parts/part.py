@@ -9,7 +9,7 @@ from pydantic import Field
 from pydrake.systems.framework import System
 
 from drake_formation.config.errors import Fault
-from drake_formation.config.values import Length, Section
+from drake_formation.config.values import Length, Positive, Section
 from drake_formation.formation.formation import Formation
 from drake_formation.sources import OWN
 
@@ -106,6 +106,10 @@ class Part:
         """The block's continuous state at the start; None where its default is right for every scenario."""
         return None
 
+    def initial_discrete_state(self, formation: Formation, owner: int) -> Numbers | None:  # noqa: ARG002
+        """The block's discrete state at the start, one array a group; None where its default is right for all."""
+        return None
+
 
 class RestNumbers(Section):
     """Where a spring is at rest, if not between its robots in their slots; at most one of the two may be given."""
@@ -120,11 +124,26 @@ class RestNumbers(Section):
     )
 
 
+class BreakNumbers(Section):
+    """When a spring breaks, if it may."""
+
+    break_at_strain: Positive | None = Field(
+        default=None,
+        description="largest |d/r − 1| (1) that the spring bears: beyond it, it breaks for good; one for all or one an "
+        "edge; default: any",
+    )
+    break_at_force: Positive | None = Field(
+        default=None,
+        description="largest ‖F_ij‖ (N) that the spring bears, likewise; one for all or one an edge; default: any",
+    )
+
+
 class SpringLaw(Part):
     """The law by which the carried object couples two robots; a part without a block, for plants carry it out.
 
     The fields of its configuration are numbers of an edge, and the law's arguments in the order of their declaration;
-    those of :class:`RestNumbers`, if it has them, say where the spring is at rest instead.
+    those of :class:`RestNumbers`, if it has them, say where the spring is at rest instead, and those of
+    :class:`BreakNumbers` when it breaks.
     """
 
     role = "spring"
@@ -148,7 +167,8 @@ class SpringLaw(Part):
     @classmethod
     def arguments(cls) -> list[str]:
         """The fields that are the law's arguments, in their order."""
-        return [name for name in cls.Config.model_fields if name not in RestNumbers.model_fields]
+        others = RestNumbers.model_fields.keys() | BreakNumbers.model_fields.keys()
+        return [name for name in cls.Config.model_fields if name not in others]
 
     def numbers(self, formation: Formation, owner: int) -> Numbers:  # noqa: ARG002
         """The numbers of the edge that are the law's arguments."""

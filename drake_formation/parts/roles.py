@@ -8,6 +8,10 @@ STATE = 4
 """Numbers that robots tell each other: position q (m) and velocity v (m/s), in the world frame."""
 
 
+TRAFFIC = ("sent", "lost", "delivered", "overtaken", "late", "sent_at")
+"""What a channel of packets tells of itself: how many so far, and when the one in use was sent (s)."""
+
+
 @dataclass(frozen=True)
 class Port:
     """A port by which the diagram knows a part.
@@ -31,16 +35,21 @@ class Port:
 
 
 PHASE = Port("phase", 1, "0 aggregation, 1 transport")
-OWN_STATE = Port("state", STATE, "the robot's state [q; v] (m, m/s)")
+OWN_STATE = Port("state", STATE, "the robot's state [q; v], as it takes it to be (m, m/s)")
 REFERENCE = Port("reference", 6, "motion of the formation centre [p; ṗ; p̈] (m, m/s, m/s²)")
 SENSED = Port("sensed", None, "for each obstacle 1 where no robot is nearer to it, else 0")
 VISIBLE = Port("visible", None, "for each obstacle 1 where nothing stands between, else 0")
 HEARD = Port("channel_j", STATE, "the state that robot j sends, for every robot heard (m, m/s)")
 HELD = Port("spring_j", STATE, "the state of robot j, for every robot that the object couples (m, m/s)")
 LOAD = Port("load", 2, "what an object that is a body of its own exerts on the robot (N)")
+INTACT = Port("intact", None, "for each spring or grip that it has 1 until it breaks, else 0")
+HELD_ON = Port("held", None, "for each spring or grip that it has 1 while it is held, else 0")
+FAILURE = Port("failure", 3, "share of the control force it gives, 0 while it brakes or 1, and 1/τ of its brakes (1/s)")
 FORCE = Port("force", 2, "control force (N)", required=True)
 NOMINAL = Port("nominal", 2, "sum of the forces of the robot's controllers that do not ask for it (N)")
 OBJECT = Port("spring_force", 2, "what the object exerts on the robot (N)")
+DEMANDED = Port("demanded", 2, "force asked of the robot's actuators (N)")
+APPLIED = Port("applied", 2, "force that the robot's actuators exert (N)")
 KNOWN = (OWN_STATE, REFERENCE, PHASE, HEARD, SENSED, VISIBLE)
 """What any controller may ask for."""
 
@@ -79,7 +88,7 @@ ROLES: dict[str, Role] = {
             "plant",
             "point_mass",
             "robot",
-            (FORCE, PHASE, HELD, LOAD),
+            (FORCE, PHASE, HELD, LOAD, INTACT, HELD_ON, FAILURE),
             (
                 Port("state", STATE, "position and velocity where it holds the object (m, m/s)", required=True),
                 Port("spring_force", 2, "what the object exerts on the robot (N)", required=True),
@@ -93,11 +102,38 @@ ROLES: dict[str, Role] = {
             "tracking",
             "lqr",
             "robot",
-            KNOWN,
+            (*KNOWN, DEMANDED, APPLIED),
             (FORCE, Port("error", STATE, "tracking error x − x_r (m, m/s)", required=True)),
         ),
         Role("coordination", ("consensus",), "consensus", "consensus", "robot", KNOWN, (FORCE,)),
         Role("avoidance", ("avoidance",), "avoidance", "khatib", "robot", (*KNOWN, NOMINAL, OBJECT), (FORCE,)),
+        Role(
+            "sensor",
+            ("sensor",),
+            "sensor",
+            "ideal",
+            "robot",
+            (Port("true_state", STATE, "the robot's state [q; v], as it is (m, m/s)"), DEMANDED),
+            (Port("measured", STATE, "what the robot takes for its state (m, m/s)", required=True),),
+        ),
+        Role(
+            "computer",
+            ("computer",),
+            "computer",
+            "continuous",
+            "robot",
+            (Port("asked", 2, "sum of the forces of the robot's controllers (N)", required=True),),
+            (Port("demanded", 2, "force asked of the robot's actuators (N)", required=True),),
+        ),
+        Role(
+            "actuator",
+            ("actuator",),
+            "actuator",
+            "ideal",
+            "robot",
+            (Port("demanded", 2, "force asked of the robot's actuators (N)", required=True),),
+            (Port("force", 2, "force that they exert (N)", required=True),),
+        ),
         Role(
             "reference",
             ("transport", "reference"),
@@ -113,7 +149,7 @@ ROLES: dict[str, Role] = {
             "object",
             "springs",
             "formation",
-            (Port("state_j", STATE, "the state of robot j, for every robot (m, m/s)"), PHASE),
+            (Port("state_j", STATE, "the state of robot j, for every robot (m, m/s)"), PHASE, INTACT, HELD_ON),
             (
                 Port("grip_force_j", 2, "what it exerts on robot j, zero during aggregation (N)", required=True),
                 Port("pose", 6, "place of its centre, heading, and their rates (m, rad, m/s, rad/s)", required=True),
@@ -126,12 +162,22 @@ ROLES: dict[str, Role] = {
             "channel",
             "ideal",
             "channel",
-            (Port("sent", STATE, "the state of the robot that speaks (m, m/s)", required=True), PHASE),
-            (Port("received", STATE, "what the listening robot takes for it (m, m/s)", required=True),),
+            (
+                Port("sent", STATE, "the state of the robot that speaks (m, m/s)", required=True),
+                Port("own", STATE, "the state of the robot that listens (m, m/s)"),
+                PHASE,
+            ),
+            (
+                Port("received", STATE, "what the listening robot takes for it (m, m/s)", required=True),
+                Port("traffic", len(TRAFFIC), "packets sent, lost, delivered, overtaken, late; when the last was sent"),
+            ),
         ),
     )
 }
-"""By name. A robot's controllers are the roles with an output ``force``."""
+"""By name."""
 
 CONTROLLERS = ("tracking", "coordination", "avoidance")
 """Roles whose forces on a robot add up to its control, in this order."""
+
+WIRES = ("sensor", "computer", "actuator")
+"""Roles of a robot whose parts need no block: what would enter it then goes on as it is."""

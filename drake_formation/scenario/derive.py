@@ -39,7 +39,11 @@ def robot_count(shape: Shape) -> int:
 
 def slots(scenario: Scenario) -> Array:
     """Slots h_i relative to the formation centre (m), shape (N, 2)."""
-    shape = scenario.formation
+    return slots_of(scenario.formation)
+
+
+def slots_of(shape: Shape) -> Array:
+    """Slots of a shape (m), shape (N, 2)."""
     if isinstance(shape, Slots):
         return np.array(shape.slots, dtype=float)
     if isinstance(shape, Line):

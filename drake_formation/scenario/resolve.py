@@ -13,10 +13,11 @@ from drake_formation.parts.part import Part
 from drake_formation.parts.registry import kinds
 from drake_formation.parts.roles import ROLES
 from drake_formation.scenario import derive
-from drake_formation.scenario.checks import geometry, graphs, obstacles, simulator
+from drake_formation.scenario.checks import failures, geometry, graphs, obstacles, simulator
 from drake_formation.scenario.owned import handed_out, path_of
 from drake_formation.scenario.schema import Scenario
 from drake_formation.scenario.source import Document
+from drake_formation.scenario.stages import stages
 
 KEPT = "_resolved"
 """Where a scenario keeps what it was resolved into: beside its fields, so that equality does not look at it."""
@@ -51,7 +52,9 @@ def warnings(scenario: Scenario) -> list[Fault]:
     Raises:
         ScenarioError: the scenario is wrong.
     """
-    return list(dict.fromkeys(_placed(scenario, resolve(scenario).warnings_of_parts())))
+    formation = resolve(scenario)
+    of_parts = _placed(scenario, formation.warnings_of_parts())
+    return list(dict.fromkeys([*of_parts, *failures.warnings(scenario, formation)]))
 
 
 def check(scenario: Scenario) -> list[Fault]:
@@ -64,9 +67,12 @@ def check(scenario: Scenario) -> list[Fault]:
         return faults  # without a number of robots, or with obstacles that are none, nothing else can be said
     places = list(geometry.check(scenario))
     links = list(graphs.check(scenario))
+    failing = list(failures.check(scenario))
     owners = _owners(scenario, sound=not links)
     parts, handing = _parts(scenario, owners)
     formation = _formation(scenario, parts, owners, sound=not places and not links)
+    if not places and not failing:
+        formation = formation.changed(stages=stages(scenario))
     skipped = {"reference", *(["coordination"] if links else []), *(["object"] if places or links else [])}
     faults = list(dict.fromkeys([
         *places,
@@ -74,6 +80,8 @@ def check(scenario: Scenario) -> list[Fault]:
         *handing,
         *links,
         *_part_faults(scenario, formation, tuple(role for role in ROLES if role not in skipped)),
+        *failing,
+        *failures.check_parts(scenario, formation),
         *simulator.check(scenario),
     ]))  # fmt: skip
     if not faults:
@@ -128,6 +136,8 @@ def _formation(
         aggregation_duration=scenario.aggregation.duration,
         transport_duration=scenario.transport.duration,
         law=kinds("spring")[scenario.springs.law],
+        seed=scenario.seed,
+        tolerance=scenario.transport.tolerance,
         parts=parts,
     )
 

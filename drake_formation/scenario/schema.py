@@ -13,6 +13,7 @@ from drake_formation.config.each import each
 from drake_formation.config.values import Edge, Graph, Length, NonNegative, Point, Positive, Section, TopologyName
 from drake_formation.formation.formation import SPRINGS
 from drake_formation.parts.registry import when_changed
+from drake_formation.scenario.failures import Failure
 from drake_formation.scenario.obstacles import Obstacle
 from drake_formation.scenario.written import PartOf, rebuild_sections
 
@@ -179,6 +180,9 @@ class Transport(Section):
 
     goal: Point = Field(description="where the formation centre is carried to (m)")
     duration: Positive = Field(default=60.0, description="how long (s); chosen: 60")
+    tolerance: Positive = Field(
+        default=0.05, description="consensus error (m) beyond which the formation counts as lost; chosen: 0.05"
+    )
     reference: Annotated[Any, PartOf("reference")] = Field(
         default_factory=PartOf("reference").default,
         description="where the formation centre should be on the way; inferred: a set point",
@@ -240,8 +244,27 @@ class Scenario(Section):
     avoidance: Annotated[Any, PartOf("avoidance", Avoidance)] = Field(
         default_factory=PartOf("avoidance", Avoidance).default, description="obstacles, and what robots do about them"
     )
+    sensor: Annotated[Any, PartOf("sensor")] = Field(
+        default_factory=PartOf("sensor").default,
+        description="how robots know their own states, which they also send; paper: ideal",
+    )
+    computer: Annotated[Any, PartOf("computer")] = Field(
+        default_factory=PartOf("computer").default,
+        description="when robots work out their control forces; paper: continuously",
+    )
+    actuator: Annotated[Any, PartOf("actuator")] = Field(
+        default_factory=PartOf("actuator").default,
+        description="what robots exert of the control forces asked of them; paper: ideal",
+    )
     aggregation: Aggregation = Aggregation()
     transport: Transport
+    failures: tuple[Failure, ...] = Field(default=(), strict=False, description="robots that fail; paper: none")
+    seed: int = Field(
+        default=0,
+        ge=0,
+        description="of all that is random in the scenario; every part draws from a stream of its own, named by its "
+        "place in the diagram; chosen: 0",
+    )
     simulator: Simulation = Simulation()
 
     @model_serializer(mode="wrap")

@@ -1,5 +1,6 @@
 """From plain data to a sound scenario, or to everything that is wrong with it."""
 
+from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
@@ -21,7 +22,7 @@ def validate(document: Document) -> Scenario:
         ScenarioError: with all faults of single fields or, if there are none, all that concern several fields.
     """
     try:
-        scenario = Scenario.model_validate(document.data)
+        scenario = Scenario.model_validate(document.data, context={"folder": Path(document.name).parent})
     except ValidationError as error:
         details = error.errors(include_url=False)
         raise document.attributed(_fault(detail) for detail in details if not _is_echo(detail)) from error
@@ -48,6 +49,8 @@ def _fault(detail: ErrorDetails) -> Fault:
         return Fault(place.path, MESSAGES[kind], allowed=", ".join(keys), suggestion=nearest(place.path[-1], keys))
     if kind == "missing":
         return Fault(place.path, MESSAGES[kind], allowed=place.allowed)
+    if kind == "value_error":
+        return Fault(place.path, str(detail["ctx"]["error"]), shown(value), place.allowed)
     return _wrong(place, value, kind)
 
 

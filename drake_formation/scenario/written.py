@@ -129,7 +129,7 @@ def _listed_fields(config: Any) -> frozenset[str]:
 
 
 def _annotation(info: FieldInfo, role: Role) -> Any:
-    return _own(info) if role.owner in ("formation", "channel") else each(_own(info))
+    return _own(info) if role.owner == "formation" else each(_own(info))
 
 
 def _own(info: FieldInfo) -> Any:

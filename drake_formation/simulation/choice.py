@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.formation.formation import Formation
+from drake_formation.parts.objects.breaking import looks_every
 from drake_formation.parts.objects.carried import CarriedObject
 from drake_formation.parts.tracking.lqr import Lqr, lqr_gain
 from drake_formation.scenario import Scenario, ScenarioError, resolve
@@ -81,14 +82,15 @@ def steps(scenario: Scenario, duration: float, *, carrying: bool) -> float:
         carrying: whether the springs are engaged.
     """
     settings = scenario.simulator
+    looks = duration / looks_every(resolve(scenario)) if carrying else 0.0  # a step ends wherever one looks for breaks
     if not settings.use_error_control:
-        return duration / settings.max_step_size
+        return duration / settings.max_step_size + looks
     stiffness, damping = _largest_rates(resolve(scenario), carrying)
     fastest = float(np.sqrt(stiffness))
     accurate = ACCURATE * (settings.accuracy / 1e-6) ** 0.2
     ringing = min(duration, FADED / damping) if damping else duration
     fewest = max(1 / settings.max_step_size, max(fastest, damping) / STABLE)
-    return float(duration * fewest + ringing * fastest / accurate)
+    return float(duration * fewest + ringing * fastest / accurate + looks)
 
 
 def _largest_rates(formation: Formation, carrying: bool) -> tuple[float, float]:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from drake_formation.formation.formation import Formation
 from drake_formation.scenario import resolve
+from drake_formation.simulation.events import Event
 from drake_formation.simulation.motion import Motion
 from drake_formation.simulation.series import Series
 from drake_formation.vectors import length_of
@@ -16,26 +17,12 @@ Array = NDArray[np.float64]
 Gaps = Callable[[Array, Array], Array]
 """Distance of the surfaces of each pair (m), shape (..., pairs), by time (s) and positions of the robots (m)."""
 
+COLLISION = "collision"
+"""The kind of event that a contact begins."""
+
 CUTS = 32
 FINE = 1e-6
 """Share of a step below which it is not cut any more."""
-
-
-@dataclass(frozen=True)
-class Collision:
-    """The beginning of a contact.
-
-    Attributes:
-        time: when (s).
-        place: where, in the world frame (m).
-        robot: whose footprint, from 1.
-        other: what it touches: ``robot 2`` or ``obstacle 1``.
-    """
-
-    time: float
-    place: tuple[float, float]
-    robot: int
-    other: str
 
 
 @dataclass(frozen=True)
@@ -46,16 +33,16 @@ class _Pairs:
         gaps: the distances of their surfaces.
         robots: of each pair the robots that move, from 0, shape (pairs, 1 or 2).
         speed: how fast anything else in it moves at the most (m/s).
-        meeting: the collision of a pair, by its index, time (s) and the positions of all robots (m).
+        meeting: the event that a pair touches, by its index, time (s) and the positions of all robots (m).
     """
 
     gaps: Gaps
     robots: NDArray[np.intp]
     speed: float
-    meeting: Callable[[int, float, Array], Collision]
+    meeting: Callable[[int, float, Array], Event]
 
 
-def collisions(series: Series) -> list[Collision]:
+def collisions(series: Series) -> list[Event]:
     """Every contact of a robot with an obstacle, during transport, or with another robot, as it begins.
 
     A robot without a footprint is a point, which touches obstacles and robots that have one, and no other point.
@@ -67,7 +54,7 @@ def collisions(series: Series) -> list[Collision]:
         In the order of their times; what touches from the start, or when obstacles come into play, does so then.
     """
     formation, phase = resolve(series.scenario), series["phase"]
-    found: list[Collision] = []
+    found: list[Event] = []
     among_robots = _among_robots(formation)
     carried_on = np.zeros(len(among_robots.robots), dtype=bool)
     for part in (0, 1):  # accelerations jump in between
@@ -79,7 +66,12 @@ def collisions(series: Series) -> list[Collision]:
             carried_on = among_robots.gaps(motion.times[-1:], motion.position[-1:])[0] <= 0
             if part:
                 found += _beginnings(motion, _with_obstacles(formation))
-    return sorted(found, key=lambda collision: collision.time)
+    return sorted(found, key=lambda event: event.time)
+
+
+def _touching(time: float, place: tuple[float, float], who: tuple[int, ...], what: str) -> Event:
+    x, y = place
+    return Event(COLLISION, time, (float(x), float(y)), who, f"robot {who[0]} touches {what}")
 
 
 def _among_robots(formation: Formation) -> _Pairs:
@@ -91,10 +83,10 @@ def _among_robots(formation: Formation) -> _Pairs:
     def gaps(_times: Array, position: Array) -> Array:
         return length_of(position[..., first, :] - position[..., second, :]) - (radii[first] + radii[second])
 
-    def meeting(pair: int, time: float, position: Array) -> Collision:
+    def meeting(pair: int, time: float, position: Array) -> Event:
         i, j = int(first[pair]), int(second[pair])
         x, y = position[i] + (position[j] - position[i]) * radii[i] / (radii[i] + radii[j])
-        return Collision(time, (float(x), float(y)), i + 1, f"robot {j + 1}")
+        return _touching(time, (x, y), (i + 1, j + 1), f"robot {j + 1}")
 
     return _Pairs(gaps, np.column_stack([first, second]), 0.0, meeting)
 
@@ -107,17 +99,17 @@ def _with_obstacles(formation: Formation) -> _Pairs:
         clearance = obstacles.clearance(position, times[..., None]) - radii[:, None]
         return clearance.reshape(*position.shape[:-2], -1)
 
-    def meeting(pair: int, time: float, position: Array) -> Collision:
+    def meeting(pair: int, time: float, position: Array) -> Event:
         i, k = int(robot[pair]), int(obstacle[pair])
         away = obstacles.away(position[i], time)[0][k]
         x, y = position[i] - radii[i] * away / max(float(np.hypot(*away)), np.finfo(float).tiny)
-        return Collision(time, (float(x), float(y)), i + 1, f"obstacle {k + 1}")
+        return _touching(time, (x, y), (i + 1,), f"obstacle {k + 1}")
 
     speed = max((item.top_speed for item in obstacles), default=0.0)
     return _Pairs(gaps, robot[:, None], speed, meeting)
 
 
-def _beginnings(motion: Motion, pairs: _Pairs, carried_on: NDArray[np.bool_] | None = None) -> Iterator[Collision]:
+def _beginnings(motion: Motion, pairs: _Pairs, carried_on: NDArray[np.bool_] | None = None) -> Iterator[Event]:
     """The contacts that begin in a motion; those that are carried on from before it do not."""
     if not len(pairs.robots):
         return

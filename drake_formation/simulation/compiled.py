@@ -111,11 +111,12 @@ class CompiledRun:
             accuracy=self._accuracy,
             max_step=self._max_step,
             adaptive=not self.fixed_step,
+            record=self.recording.names,
             updated=True,
             wired=True,
         )
         for piece in pieces:
-            self.recording.add(piece.times, piece.states, piece.values)
+            self.recording.add(piece.times, self._lowered.named(self.recording.names, piece.recorded))
             if self._progress:
                 self._progress(self.context.get_time())
             if piece.status == Status.NOT_FINITE:
@@ -131,7 +132,9 @@ class CompiledRun:
         self._updated_at = time
         self._lowered.updates.carry_out(self.context)
         state = self.context.get_continuous_state_vector().CopyToVector()
-        self.recording.add(np.array([time]), state[None], self._lowered.read(self.context, wired=True))
+        values = self._lowered.read(self.context, wired=True)
+        now = np.array([time])
+        self.recording.add(now, self._lowered.outputs(self.recording.names, now, state[None], values))
 
 
 class CompiledRecording:
@@ -140,6 +143,9 @@ class CompiledRecording:
     Args:
         lowered: a compiled formation diagram.
         robots: number of robots N.
+
+    Attributes:
+        names: the diagram's output ports that it keeps.
     """
 
     def __init__(self, lowered: CompiledDiagram, robots: int) -> None:
@@ -147,16 +153,15 @@ class CompiledRecording:
         self._ports = recorded_ports(lowered.diagram, robots)
         self._telling = telling(lowered.diagram, robots)
         self._sizes = {name: lowered.diagram.GetOutputPort(ports[0]).size() for name, ports in self._ports.items()}
+        self.names = ["phase", *(port for ports in self._ports.values() for port in ports)]
         self._times: list[Array] = []
         self._pieces: list[dict[str, Array]] = []
         self._known: dict[str, Array] = {}
 
-    def add(self, times: Array, states: Array, values: Array) -> None:
+    def add(self, times: Array, piece: dict[str, Array]) -> None:
         """Keep samples; one at the time of the last sample replaces it (the hand-off changes forces in no time)."""
         if not len(times):
             return
-        names = ["phase", *(port for ports in self._ports.values() for port in ports)]
-        piece = self._lowered.outputs(names, times, states, values)
         if self._times and self._times[-1][-1] == times[0]:
             self._times[-1] = self._times[-1][:-1]
             self._pieces[-1] = {name: series[:-1] for name, series in self._pieces[-1].items()}
@@ -182,6 +187,10 @@ class CompiledRecording:
             self._known[port] = np.concatenate([np.zeros((0, len(ports), size)), *pieces])
             self._known[port].setflags(write=False)
         return self._known[port]
+
+    def has(self, port: str) -> bool:
+        """Whether a port is recorded."""
+        return port in self._ports
 
     def accelerations(self) -> dict[int, Array]:
         """Acceleration of each robot that has such a port (m/s²), from 0, each of shape (samples, 2)."""

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydrake.systems.framework import Context, Diagram, EventStatus
 
-from drake_formation.diagram import ACCELERATION, OBJECT_OUTPUTS
+from drake_formation.diagram import ACCELERATION, DEMANDED, MEASURED, OBJECT_OUTPUTS
+from drake_formation.failing import BROKEN_OUTPUTS, DRIVEN
 from drake_formation.parameters import robot_name
 
 Array = NDArray[np.float64]
@@ -15,6 +16,8 @@ Array = NDArray[np.float64]
 RECORDED = ("state", "tracking_error", "tracking_force", "consensus_force", "avoidance_force", "spring_force")
 """Output ports of every robot that a run records; the rest follows from them, and from ``ACCELERATION`` where it is."""
 
+IN_PLACE_OF = {DEMANDED: "control_force", MEASURED: "state"}
+"""Ports that some robots have, and which port of the others tells the same; recorded of all where any has it."""
 
 OBJECT = tuple(f"object_{name}" for name in OBJECT_OUTPUTS)
 """Output ports of an object that is a body of its own, which are recorded as those of one robot are."""
@@ -36,7 +39,10 @@ class Recording(Protocol):
         """0 during aggregation, 1 during transport; shape (samples,)."""
 
     def series(self, port: str) -> Array:
-        """Values of one of the ports ``RECORDED``, or of ``OBJECT`` with N = 1, shape (samples, N, size)."""
+        """Values of a recorded port, shape (samples, N, size); N = 1 for those of the whole."""
+
+    def has(self, port: str) -> bool:
+        """Whether a port is recorded; not all formations have all."""
 
     def accelerations(self) -> dict[int, Array]:
         """Acceleration of each robot that has such a port (m/s²), from 0, each of shape (samples, 2)."""
@@ -53,7 +59,22 @@ def recorded_ports(diagram: Diagram, robots: int) -> dict[str, list[str]]:
     ports = {name: [f"{robot_name(i)}_{name}" for i in range(robots)] for name in RECORDED}
     if told := telling(diagram, robots):
         ports[ACCELERATION] = list(told.values())
-    return ports | {name: [name] for name in OBJECT if diagram.HasOutputPort(name)}
+    if telling_channels := traffic_ports(diagram):
+        ports["traffic"] = telling_channels
+    for name, same in IN_PLACE_OF.items():
+        names = [f"{robot_name(i)}_{name}" for i in range(robots)]
+        if any(map(diagram.HasOutputPort, names)):
+            others = ports[same] = [f"{robot_name(i)}_{same}" for i in range(robots)]
+            ports[name] = [
+                own if diagram.HasOutputPort(own) else other for own, other in zip(names, others, strict=True)
+            ]
+    return ports | {name: [name] for name in (*OBJECT, DRIVEN, *BROKEN_OUTPUTS) if diagram.HasOutputPort(name)}
+
+
+def traffic_ports(diagram: Diagram) -> list[str]:
+    """The output ports at which channels of packets tell what becomes of these, in the order of the channels."""
+    names = [diagram.get_output_port(k).get_name() for k in range(diagram.num_output_ports())]
+    return [name for name in names if name.startswith("channel_") and name.endswith("_traffic")]
 
 
 class Recorder:
@@ -115,6 +136,10 @@ class Recorder:
         """Values of a recorded port, shape (samples, N, size)."""
         ports = self._ports[port]
         return np.reshape(self._samples[port], (len(self._times), len(ports), ports[0].size()))
+
+    def has(self, port: str) -> bool:
+        """Whether a port is recorded."""
+        return port in self._ports
 
     def accelerations(self) -> dict[int, Array]:
         """Acceleration of each robot that has such a port (m/s²), from 0, each of shape (samples, 2)."""

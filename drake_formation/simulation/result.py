@@ -5,10 +5,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from drake_formation.parts.roles import TRAFFIC
 from drake_formation.scenario import resolve, to_yaml
 from drake_formation.scenario.source import parse
 from drake_formation.scenario.validate import validate
 from drake_formation.simulation.choice import Choice
+from drake_formation.simulation.events import labelled_events
+from drake_formation.simulation.happened import found_events
 from drake_formation.simulation.obstacles import chattering
 from drake_formation.simulation.series import Series
 
@@ -28,7 +31,7 @@ VARIABLES = {
     "tracking_force": (VECTOR, "N", "local control u_l (Eq. 10)"),
     "consensus_force": (VECTOR, "N", "global control u_g (Eq. 15)"),
     "avoidance_force": (VECTOR, "N", "obstacle avoidance"),
-    "control_force": (VECTOR, "N", "control u, the sum of the three (Eq. 8)"),
+    "control_force": (VECTOR, "N", "control u that acts on a robot, the sum of the three (Eq. 8) unless limited"),
     "spring_force": (VECTOR, "N", "what the object exerts on a robot"),
     "spring_length": (("time", "spring"), "m", "length d of a spring"),
     "rest_length": (("spring",), "m", "length r of a spring at rest"),
@@ -43,17 +46,28 @@ VARIABLES = {
 """Dimensions, unit and meaning of each variable."""
 
 POSE = ("x", "y", "heading", "x_rate", "y_rate", "heading_rate")
-OBJECT_VARIABLES = {
+SOMETIMES = {
+    "demanded_force": (VECTOR, "N", "control asked of a robot's actuators, which exert control_force"),
+    "measured_position": (VECTOR, "m", "position that a robot takes for its own"),
+    "measured_velocity": (VECTOR, "m/s", "velocity that a robot takes for its own"),
     "object_pose": (("time", "pose"), "m, m, rad, m/s, m/s, rad/s", "place and heading of the object and their rates"),
     "object_strain": (("time",), "1", "strain of the object"),
-}
-"""Those there are where the object is a body of its own."""
-
-SHAPES = {
+    "traffic": (("time", "channel", "count"), "1, and s", "packets so far, and when the one in use was sent"),
     "obstacle_outline": (("time", "obstacle", "vertex", "axis"), "m", "vertices of an obstacle"),
     "robot_radius": (("robot",), "m", "radius of a robot's footprint"),
 }
-"""The first there is where an obstacle is no circle, or moves; the second where a robot is no point."""
+"""Those there are where the computer or actuators of a robot, or its sensors, are no wires, where the object is a
+body of its own, where channels carry packets, where obstacles are no circles or move, and where robots have
+footprints."""
+
+FAILING_VARIABLES = {
+    "driven": (("time", "robot"), "1", "1 while the drives of a robot work, else 0"),
+    "acting": (("time", "spring"), "1", "1 while a spring holds its robots, else 0"),
+    "grip_acting": (("time", "robot"), "1", "1 while the grip of a robot holds, else 0"),
+    "broken_at": (("spring",), "s", "when a spring broke"),
+    "grip_broken_at": (("robot",), "s", "when the grip of a robot broke"),
+}
+"""Those there may be where something fails or breaks; NaN stands for never."""
 
 
 def labelled_result(series: Series) -> "xr.Dataset":
@@ -64,25 +78,29 @@ def labelled_result(series: Series) -> "xr.Dataset":
 
     Returns:
         A dataset over ``time`` (every step of the integrator), ``robot`` (from 1), ``axis`` (x, y), ``spring``
-        (``1-2``) and ``obstacle`` (from 1); an object that is a body of its own has ``object_pose`` over ``pose``, and
-        ``object_strain``, as its kind says; obstacles that are no circles or move have ``obstacle_outline`` over
-        ``vertex``. ``deviation`` is NaN before the hand-off. A sample
-        at the hand-off shows what is so from then on. Between samples the motion is the quintic with position,
-        velocity and acceleration at both ends; :func:`drake_formation.measuring.metrics` measures that. The attribute
-        ``remark`` says what to know about the run, if there is anything.
+        (``1-2``) and ``obstacle`` (from 1). ``control_force`` is what acts on the robots; where the computer or the
+        actuators of any are no wires, ``demanded_force`` is what is asked of the actuators. Where sensors are none,
+        ``measured_position`` and ``measured_velocity`` are what robots take for their own and send; all else is true.
+        An object that is a body of its own has ``object_pose`` over ``pose``, and ``object_strain``, as its kind says.
+        Obstacles that are no circles or move have ``obstacle_outline`` over ``vertex``.
+        Channels that carry packets have ``traffic`` over ``channel`` (what robot 2 tells robot 1 is ``2-1``) and
+        ``count``.
+        ``deviation`` is NaN before the hand-off. A sample at the hand-off shows what is so from then on. Between
+        samples the motion is the quintic with position, velocity and acceleration at both ends;
+        :func:`drake_formation.measuring.metrics` measures that. The attribute ``remark`` says what to know about the
+        run, if there is anything. What happened at one moment is in ``event_place``; see
+        :func:`drake_formation.simulation.events.events`.
     """
     import xarray as xr  # slow to import, and not needed to build a diagram
 
-    formation = resolve(series.scenario)
-    has_body = formation.has_body
-    shapes = {name: description for name, description in SHAPES.items() if name in series}
-    named = VARIABLES | (OBJECT_VARIABLES if has_body else {}) | shapes
     variables = {
         name: xr.Variable(dimensions, series[name], {"units": units, "long_name": meaning})
-        for name, (dimensions, units, meaning) in named.items()
+        for name, (dimensions, units, meaning) in (VARIABLES | SOMETIMES | FAILING_VARIABLES).items()
+        if name in VARIABLES or name in series
     }
     variables["phase"] = variables["phase"].astype(np.int8)
     scenario = series.scenario
+    formation = resolve(scenario)
     coordinates = {
         "time": ("time", series["time"], {"units": "s", "long_name": "time"}),
         "robot": np.arange(1, len(series["slot"]) + 1),
@@ -90,8 +108,13 @@ def labelled_result(series: Series) -> "xr.Dataset":
         "spring": [f"{i + 1}-{j + 1}" for i, j in formation.springs.pairs.tolist()],
         "obstacle": np.arange(1, len(series["obstacle_radius"]) + 1),
     }
-    if has_body:
+    if "object_pose" in series:
         coordinates["pose"] = list(POSE)
+    happened, when = labelled_events(found_events(series))
+    if "traffic" in series:
+        pairs = formation.channels.pairs[list(formation.telling_channels)].tolist()
+        coordinates["channel"] = [f"{speaker + 1}-{listener + 1}" for listener, speaker in pairs]
+        coordinates["count"] = list(TRAFFIC)
     attributes = {
         "title": scenario.name,
         "scenario": to_yaml(scenario),
@@ -105,7 +128,7 @@ def labelled_result(series: Series) -> "xr.Dataset":
         attributes["engine_reason"] = series.choice.reason
     if remark := chattering(scenario, series["clearance"][series["phase"] == 1]):
         attributes["remark"] = remark
-    return xr.Dataset(variables, coordinates, attributes)
+    return xr.Dataset(variables | happened, coordinates | when, attributes)
 
 
 def series_of(result: "xr.Dataset") -> Series:

@@ -153,11 +153,11 @@ class PreparedRun:
         context = self._initial_context(formation)
         run = self._start(scenario, context, progress and (lambda time: progress(time - begin)))
         try:
-            run.advance(hand_off)
+            _advance(run, formation, hand_off)
             # Carry out the hand-off now, so that the first sample of the transport has its forces.
             run.carry_out_updates()
             at_hand_off = run.context.Clone() if felt_obstacles(formation) else None
-            run.advance(end)
+            _advance(run, formation, end)
         except _FAILURES as failure:
             if felt_obstacles(formation) and len(run.recording.times):
                 self._require_clear(scenario, run)
@@ -175,7 +175,7 @@ class PreparedRun:
             scenario, at_hand_off, progress and (lambda time: progress(end - begin + time - hand_off))
         )
         try:
-            nominal.advance(end)
+            _advance(nominal, formation, end)
         except _FAILURES as failure:
             raise self._simulation_error(
                 nominal, self._series(scenario, run.recording, nominal.recording), failure
@@ -250,6 +250,16 @@ def _ready(engine: str, diagram: Diagram, formation: Formation) -> Start:
                 law = f" with {formation.law.called()}" if part.role == "robot" else ""
                 raise LoweringError(error.block, f"{error.reason} ({part.called()}{law})") from error
         raise
+
+
+def _advance(run: Engine, formation: Formation, end: float) -> None:
+    """Go on to a time (s), by the failures on the way, so that samples at them show what is so from then on."""
+    now = run.context.get_time()
+    for stage in formation.stages:
+        if now < stage.time < end:
+            run.advance(stage.time)
+            run.carry_out_updates()
+    run.advance(end)
 
 
 def _require_no_contact(series: Series) -> None:

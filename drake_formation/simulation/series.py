@@ -6,7 +6,11 @@ from functools import reduce
 import numpy as np
 from numpy.typing import NDArray
 
+from drake_formation.diagram import DEMANDED, MEASURED
+from drake_formation.failing import BROKEN_OUTPUTS, DRIVEN
+from drake_formation.parts.objects.breaking import breaks
 from drake_formation.scenario import Scenario, resolve
+from drake_formation.simulation.acting import acting, may_let_go
 from drake_formation.simulation.choice import Choice
 from drake_formation.simulation.motion import Motion
 from drake_formation.simulation.recorder import OBJECT, Recording
@@ -15,6 +19,10 @@ from drake_formation.vectors import length_of
 
 Array = NDArray[np.float64]
 
+BROKEN_AT = {False: "broken_at", True: "grip_broken_at"}
+"""When each spring broke, or each grip where the object is a body of its own (s)."""
+ACTING = {False: "acting", True: "grip_acting"}
+"""Which of them act."""
 FORCES = ("tracking_force", "consensus_force", "avoidance_force")
 
 
@@ -68,7 +76,7 @@ def time_series(scenario: Scenario, choice: Choice, run: Recording, nominal: Rec
         "deviation_acceleration": deviation.acceleration,
         "consensus_error": consensus_errors(position, slots),
         **forces,
-        "control_force": reduce(np.add, forces.values()),
+        "control_force": applied_force(run),
         "spring_force": run.series("spring_force"),
         "spring_length": lengths,
         "rest_length": formation.rest_lengths,
@@ -83,17 +91,40 @@ def time_series(scenario: Scenario, choice: Choice, run: Recording, nominal: Rec
         arrays["obstacle_outline"] = obstacles.outlines(run.times)
     if formation.footprints.any():
         arrays["robot_radius"] = formation.footprints
+    if run.has(DEMANDED):
+        arrays["demanded_force"] = run.series(DEMANDED)
+    if run.has(MEASURED):
+        measured = run.series(MEASURED)
+        arrays |= {"measured_position": measured[..., :2], "measured_velocity": measured[..., 2:]}
     if formation.has_body:
         pose, strain = (run.series(name)[:, 0] for name in OBJECT)
         arrays |= {"object_pose": pose, "object_strain": strain[:, 0]}
+    if formation.telling_channels:
+        arrays["traffic"] = run.series("traffic")
+    if breaks(formation):
+        intact, broken_at = (run.series(name)[-1, 0] for name in BROKEN_OUTPUTS)
+        arrays[BROKEN_AT[formation.has_body]] = np.where(intact == 1.0, np.nan, broken_at)
+    if may_let_go(formation):
+        broken = arrays.get(BROKEN_AT[formation.has_body])
+        arrays[ACTING[formation.has_body]] = acting(formation, broken, run.times).astype(float)
+    if DRIVEN in formation.signals:
+        arrays["driven"] = run.series(DRIVEN)[:, 0]
+        arrays["control_force"] = arrays["control_force"] * arrays["driven"][..., None]
     return Series(arrays, scenario, choice)
+
+
+def applied_force(run: Recording) -> Array:
+    """What the robots' actuators exert (N): all that their controllers ask for, unless something is between."""
+    if run.has("control_force"):
+        return run.series("control_force")
+    return reduce(np.add, (run.series(name) for name in FORCES))
 
 
 def recorded_motion(scenario: Scenario, run: Recording) -> Motion:
     """The motion of the robots; where they do not tell their acceleration, it is the forces on them by their mass."""
     state = run.series("state")
     position, velocity = state[..., :2], state[..., 2:]
-    forces = reduce(np.add, (run.series(name) for name in (*FORCES, "spring_force")))
+    forces = applied_force(run) + run.series("spring_force")
     acceleration = forces / resolve(scenario).masses[:, None]
     for robot, told in run.accelerations().items():
         acceleration[:, robot] = told

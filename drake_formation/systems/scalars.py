@@ -25,6 +25,18 @@ def cos(x: Scalar) -> Scalar:
     return math.cos(x) if isinstance(x, float) else np.cos(x) if isinstance(x, np.ndarray) else x.cos()
 
 
+def floor(x: Scalar) -> Scalar:
+    """The largest whole number that is not larger, of any scalar or an array of floats."""
+    if isinstance(x, float):
+        return float(math.floor(x))
+    return np.floor(x) if isinstance(x, np.ndarray) else symbolic.floor(x)
+
+
+def log(x: Scalar) -> Scalar:
+    """Natural logarithm, of any scalar or an array of floats."""
+    return math.log(x) if isinstance(x, float) else np.log(x) if isinstance(x, np.ndarray) else symbolic.log(x)
+
+
 def atan2(y: Scalar, x: Scalar) -> Scalar:
     """Angle of the vector (x, y) from the x axis (rad), of any scalar."""
     return arctan2(y, x)

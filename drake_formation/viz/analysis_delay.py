@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from drake_formation.analysis.linear.linearization import LinearFormation
-from drake_formation.analysis.network.delay_margin import Delayed, delay_margin
+from drake_formation.analysis.network.delay_margin import Delayed, shortest_delay
 
 Array = NDArray[np.float64]
 
@@ -110,8 +110,8 @@ def curve(formation: LinearFormation, of: Delayed, delta_v: float, low: float, h
 
 def margins(formation: LinearFormation, of: Delayed, deltas: Sequence[float], delta_v: float) -> Array:
     """Delay margins (ms) for several δ (N/m); not a number where every delay is tolerated."""
-    found = (delay_margin(formation, of=of, delta=delta, delta_v=delta_v).delay_s for delta in deltas)
-    return np.array([np.nan if delay is None else 1e3 * delay for delay in found])
+    found = (shortest_delay(formation, of=of, delta=delta, delta_v=delta_v) for delta in deltas)
+    return np.array([np.nan if each is None else 1e3 * each.delay for each in found])
 
 
 def _mark_own(axes: Axes, formation: LinearFormation) -> None:

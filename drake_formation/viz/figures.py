@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from drake_formation.vectors import length
+from drake_formation.viz.events import draw_events, mark_events
 from drake_formation.viz.obstacles import draw_obstacles
 from drake_formation.viz.style import draw_each
 
@@ -33,6 +34,7 @@ def paths(result: xr.Dataset) -> Figure:
         axes.plot(x[:1], y[:1], "s", color=colour, markersize=4.5)
         axes.plot(x[carried], y[carried], color=colour, linewidth=1.4, label=f"robot {robot}")
     draw_obstacles(axes, result, snapshot_times(result))
+    draw_events(axes, result)
     for time in snapshot_times(result):
         draw_formation(axes, result.sel(time=time))
     axes.set(xlabel="x (m)", ylabel="y (m)", title=_title(result, "paths"))
@@ -69,7 +71,8 @@ def consensus_error(result: xr.Dataset) -> Figure:
 
 def spring_lengths(result: xr.Dataset) -> Figure:
     """Elongation of every spring (paper, Fig. 10, relative to the length at rest)."""
-    elongation = (result["spring_length"] - result["rest_length"]).where(result["phase"] == 1) * 100
+    acting = result["acting"] == 1 if "acting" in result else True
+    elongation = (result["spring_length"] - result["rest_length"]).where((result["phase"] == 1) & acting) * 100
     figure = Figure(figsize=(8, 4), layout="constrained")
     axes = figure.subplots()
     many = result.sizes["spring"] > 10
@@ -165,8 +168,9 @@ def _draw_history(axes: Axes, result: xr.Dataset, series: xr.DataArray) -> None:
 
 
 def _mark_transport(axes: Axes, result: xr.Dataset, only: bool = False) -> None:
-    """Grid, and where the object is carried."""
+    """Grid, what happened, and where the object is carried."""
     axes.grid(alpha=0.3)
+    mark_events(axes, result)
     times, carried = result["time"].values, result["phase"].values == 1
     if carried.sum() < 2:  # a run that ended at its hand-off has no transport to show
         return
@@ -192,8 +196,9 @@ def _fit_to_plane(figure: Figure, axes: Axes) -> None:
 
 
 def draw_formation(axes: Axes, moment: xr.Dataset) -> None:
-    """Draw robots and springs in the plane at one time of a result."""
-    for spring in moment["spring"].values:
+    """Draw robots, and the springs that hold them, in the plane at one time of a result."""
+    acting = moment["spring"].values[moment["acting"].values == 1] if "acting" in moment else moment["spring"].values
+    for spring in acting:
         ends = [int(robot) for robot in str(spring).split("-")]
         x, y = moment["position"].sel(robot=ends).values.T
         axes.plot(x, y, color=SPRING_COLOUR, linewidth=0.8, zorder=1)

@@ -34,7 +34,10 @@ def test_run_writes_everything_and_says_where(cli):
         "result.nc",
         "scenario.yaml",
     ]
-    assert set(json.loads((folder / "metrics.json").read_text())) >= {
+    measured = json.loads((folder / "metrics.json").read_text())
+    assert [event["kind"] for event in measured["events"]] == ["hand_off"]
+    assert measured["events"][0]["sentence"] in out
+    assert set(measured) >= {
         "tracking_error_m",
         "consensus_error_m",
         "peak_force_n",

@@ -2,11 +2,11 @@
 
 import pytest
 
-from drake_formation.lowering import cache
+from drake_formation import machine_code
 
 
 @pytest.fixture(autouse=True, scope="session")
 def _own_cache(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv(cache.FOLDER, str(tmp_path_factory.mktemp("cache")))
+        patch.setenv(machine_code.FOLDER, str(tmp_path_factory.mktemp("cache")))
         yield

@@ -154,7 +154,7 @@ def test_the_jacobian_is_drakes(stiff):
     state = context.get_continuous_state_vector().CopyToVector().reshape(4, 4)
     state[:, :2] += goal - state[:, :2].mean(axis=0)
     context.SetContinuousState(state.ravel())
-    flow = Flow(compiled._derivatives, compiled._table, compiled.read(context))
+    flow = Flow(compiled._derivatives, compiled._table, compiled.read(context), compiled._recorder(()))
     expected = Linearize(diagram, context, InputPortSelection.kNoInput, OutputPortSelection.kNoOutput).A()
     np.testing.assert_allclose(flow.jacobian(0.0, state.ravel()), expected, atol=1e-6 * np.abs(expected).max())
 

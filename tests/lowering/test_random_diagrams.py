@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
 
-from drake_formation.lowering import LoweringError, cache, integration, lower
+from drake_formation import machine_code
+from drake_formation.lowering import LoweringError, integration, lower
 from drake_formation.lowering.integration import METHODS
 from tests.lowering.random_diagrams import example
 
@@ -37,7 +38,7 @@ def interpreted(source):
 def without_compiler():
     integration._compiled.cache_clear()
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(cache, "load", interpreted)
+        patch.setattr(machine_code, "load", interpreted)
         yield
     integration._compiled.cache_clear()
 

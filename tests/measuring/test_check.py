@@ -93,7 +93,7 @@ def test_the_command_says_what_changes(cli):
     assert "positions at any time" in out
     figures = json.loads(Path("o/metrics.json").read_text())
     assert 0 < figures["check"]["position_difference_m"] < 1e-4
-    assert figures["check"]["metrics"].keys() == figures.keys() - {"check"}
+    assert figures["check"]["metrics"].keys() == figures.keys() - {"check", "events"}
     assert [path.name for path in Path("o").iterdir() if path.name.startswith(".")] == []
 
 

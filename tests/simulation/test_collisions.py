@@ -41,7 +41,7 @@ def test_robots_that_pass_each_other_touch_as_often_as_they_meet(steps):
     (found,) = moving(towards, steps=steps)
     apart = np.sqrt(0.75**2 - 0.6**2)
     assert found.time == pytest.approx((4.0 - apart) / 2.0, abs=1e-5)
-    assert (found.robot, found.other) == (1, "robot 2")
+    assert (found.who, found.sentence) == ((1, 2), "robot 1 touches robot 2")
     first = np.array([found.time, 0.0])
     assert np.hypot(*(np.array(found.place) - first)) == pytest.approx(0.5, abs=1e-4)
     assert moving(towards, steps=steps, **{"robots.radius": [0.3, 0.25]}) == []
@@ -56,7 +56,7 @@ def test_a_corner_is_touched_where_the_footprint_meets_it(steps):
     wedge = {"kind": "polygon", "vertices": [[2.0, 0.3], [3.0, 4.0], [1.0, 4.0]]}
     (found,) = moving(ALONG, wedge, steps=steps)
     assert (found.time, *found.place) == pytest.approx((1.6, 2.0, 0.3), abs=1e-4)
-    assert (found.robot, found.other) == (1, "obstacle 1")
+    assert (found.who, found.sentence) == ((1,), "robot 1 touches obstacle 1")
 
 
 def test_a_graze_of_a_hair_between_two_samples_is_found():

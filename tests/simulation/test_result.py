@@ -29,6 +29,7 @@ UNITS = {
     "aggregation_centre": "m",
     "obstacle_position": "m",
     "obstacle_radius": "m",
+    "event_place": "m",
 }
 
 

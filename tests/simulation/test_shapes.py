@@ -6,6 +6,7 @@ import pytest
 from drake_formation import ScenarioError, SimulationError, load_scenario, metrics, simulate
 from drake_formation.formation.obstacles import Obstacle, Obstacles
 from drake_formation.parts.avoidance.khatib import avoidance_force
+from drake_formation.simulation.events import events
 from drake_formation.simulation.run import PreparedRun
 
 QUICK = {
@@ -116,3 +117,6 @@ def test_a_footprint_that_touches_does_not():
     result = simulate(scenario(box_moving_over(3.7), **UNFELT, **{"robots.radius": 0.3}), engine="blocks")
     assert float(result["clearance"].sel(robot=2).min()) < 0
     assert metrics(result).min_clearance_m < 0
+    (touching,) = [event for event in events(result) if event.kind == "collision"]
+    assert touching.sentence == "robot 2 touches obstacle 1"
+    assert touching.who == (2,)

@@ -4,8 +4,10 @@ import numpy as np
 
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.formation.formation import Formation
+from drake_formation.parts.actuators.motor import MAX_FORCE, MotorActuator
 from drake_formation.parts.coordination.consensus import Consensus
 from drake_formation.parts.robots.point_mass import PointMass
+from drake_formation.parts.roles import ROLES, WIRES
 from drake_formation.parts.tracking.lqr import Lqr
 
 
@@ -25,7 +27,7 @@ def require_linear_consensus(formation: Formation) -> None:
         raise IllPosedError("robots have different consensus.delta or delta_v; what is certified is one for all")
     if not formation.channels.undirected:
         raise IllPosedError("channels go one way or weigh differently each way; what is certified goes both ways alike")
-    if any(part.kind != "ideal" for part in formation.parts["channel"]):
+    if not all(getattr(part, "is_wire", False) for part in formation.parts["channel"]):
         raise IllPosedError("channels are not ideal; what is certified are wires")
 
 
@@ -53,6 +55,22 @@ def require_free_masses(formation: Formation) -> None:
             raise IllPosedError(f"robot {i + 1} is a {part.kind!r}; what is certified are robots of kind 'point_mass'")
         if part.config.drag:
             raise IllPosedError(f"robot {i + 1} has a drag; what is certified has none")
+
+
+def require_wires(formation: Formation) -> None:
+    """Robots that know their states, work out their forces continuously, and exert them, up to a largest force.
+
+    A largest force is not reached near rest, and what lies beyond is not covered anyway.
+
+    Raises:
+        IllPosedError: a robot's sensors, computer or actuators do anything else.
+    """
+    for role in WIRES:
+        for i, part in enumerate(formation.parts[role]):
+            if part.kind == ROLES[role].default or (isinstance(part, MotorActuator) and set(part.given) <= {MAX_FORCE}):
+                continue
+            wanted = f"'{ROLES[role].default}'" + (", or with a largest force alone" if role == "actuator" else "")
+            raise IllPosedError(f"robot {i + 1} has {part.called()}; what is certified is {wanted}")
 
 
 def require_start_at_rest(formation: Formation) -> None:

@@ -18,11 +18,12 @@ from drake_formation.analysis.linear.assumptions import (
     require_free_masses,
     require_linear_consensus,
     require_springs,
+    require_wires,
 )
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.diagram import build_diagram
 from drake_formation.formation.formation import Formation
-from drake_formation.parameters import find_block, placed_parts, robot_name
+from drake_formation.parameters import find_block, has_block, placed_parts, robot_name
 from drake_formation.scenario import Scenario, resolve, with_overrides
 from drake_formation.sources import OWN
 from drake_formation.systems.templates import CONVERTING
@@ -121,6 +122,7 @@ def linearize(scenario: Scenario) -> LinearFormation:
     require_springs(formation)
     require_free_masses(formation)
     require_linear_consensus(formation)
+    require_wires(formation)
     diagram = build_diagram(rest)
     _require_states(diagram, formation)
     try:
@@ -215,7 +217,7 @@ def _require_states(diagram: Diagram, formation: Formation) -> None:
     """Refuse parts with states beyond a robot's position and velocity, which no matrix here has rows for."""
     whole, found = diagram.CreateDefaultContext(), []
     for path, part, _ in placed_parts(formation):
-        if not diagram.HasSubsystemNamed(path.split("/")[0]):
+        if not has_block(diagram, path):
             continue  # a wire
         own = find_block(diagram, path).GetMyContextFromRoot(whole)
         expected = STATES if part.role == "robot" else 0

@@ -16,6 +16,12 @@ ON_AXIS = 1e-3
 NEAR_ZERO = 1e-9
 """So are those this close to it relative to the largest; a frequency tried in vain does no harm."""
 
+DECAYS_NOT = 1e-12
+"""A mode whose decay is this small, relative to the largest entry of A, does not decay but for rounding."""
+
+UNSEEN = 1e-9
+"""An output does not see a mode of which it takes this share."""
+
 
 class StateSpace(NamedTuple):
     """ẋ = A x + B w, y = C x, with n states, m inputs and p outputs.
@@ -74,14 +80,36 @@ def steady_covariance(A: Array, intensity: Array) -> Array:
 def h2_norm(system: StateSpace) -> float:
     """H2 norm √tr(C P Cᵀ): RMS of ‖y‖ under white noise of unit intensity on every input.
 
-    It is also the energy (∫‖y‖² dt)^½ of the responses to unit impulses, one at a time.
+    It is also the energy (∫‖y‖² dt)^½ of the responses to unit impulses, one at a time. Modes that do not decay do not
+    matter where no output sees them, as the common motion of robots that agree: single integrators in noisy consensus,
+    ẋ = −L x + w, have ‖x − mean‖² = Σ 1/(2 λ) over the other eigenvalues of L (Bamieh et al. 2012).
 
     Raises:
-        IllPosedError: the system is not stable.
+        IllPosedError: an output sees a mode that does not decay.
     """
+    system = without_unseen(system)
     require_stable(system.A)
     covariance = steady_covariance(system.A, system.B @ system.B.T)
     return float(np.sqrt(max(np.trace(system.C @ covariance @ system.C.T), 0.0)))
+
+
+def without_unseen(system: StateSpace) -> StateSpace:
+    """A system of the same outputs, without the modes that do not decay and that none of them sees.
+
+    Those span an invariant subspace, which leading Schur vectors are a basis of; what is orthogonal to it goes on by
+    itself.
+
+    Returns:
+        The smaller system; the same one where every mode decays, or an output sees one that does not.
+    """
+    from scipy.linalg import schur
+
+    shift = DECAYS_NOT * np.abs(system.A).max(initial=0.0) * np.eye(len(system.A))
+    triangular, basis, lasting = schur(system.A + shift, sort="rhp")
+    if np.abs(system.C @ basis[:, :lasting]).max(initial=0.0) > UNSEEN * np.abs(system.C).max(initial=0.0):
+        return system
+    rest = basis[:, lasting:]
+    return StateSpace((triangular - shift)[lasting:, lasting:], rest.T @ system.B, system.C @ rest)
 
 
 def frequency_response(system: StateSpace, frequencies: Array) -> NDArray[np.complex128]:

@@ -15,6 +15,12 @@ ON_AXIS = 1e-10
 ROUNDING = 4 * np.finfo(float).eps
 """The same, as near to zero as it can be computed."""
 
+TOUCHING = 1e-5
+"""A root that moves so nearly along the axis, in sine of the angle, touches it and goes back."""
+
+TOGETHER = 1e-7
+"""Roots at one point of the axis are this near to it, relative to the size of the matrices."""
+
 AT_REST = 1e-8
 """Frequency, relative to the size of the matrices, that is zero."""
 
@@ -43,6 +49,27 @@ def least(crossings: Iterable[Crossing | None]) -> Crossing | None:
     """The crossing of least delay among those that there are."""
     found = [crossing for crossing in crossings if crossing is not None]
     return min(found, key=lambda crossing: crossing.delay, default=None)
+
+
+def directions(present: Array, delayed: Array, meeting: Crossing) -> tuple[int, int]:
+    """How many roots go to the right, and how many to the left, through the point of a crossing as the delay grows.
+
+    A root s(τ) that is an eigenvalue λ(θ) of A₀ + e^{−jθ} A₁ at θ = −jsτ has Re(ds/dτ) = ω Re(λ′)/|1 + jλ′τ|²: it
+    crosses every time in the same direction, at whichever of the delays θ/ω, (θ + 2π)/ω, …
+
+    Args:
+        present: A₀, shape (n, n).
+        delayed: A₁, shape (n, n).
+        meeting: the crossing.
+    """
+    z = np.exp(-1j * meeting.phase)
+    values, vectors = np.linalg.eig(present + z * delayed)
+    size = float(np.linalg.norm(present) + np.linalg.norm(delayed))
+    here = np.abs(values - 1j * meeting.frequency) <= TOGETHER * size
+    moved = np.linalg.solve(vectors, -1j * z * delayed @ vectors)[np.ix_(here, here)]
+    rates = np.linalg.eigvals(moved)
+    along = TOUCHING * np.abs(rates)
+    return int((rates.real > along).sum()), int((rates.real < -along).sum())
 
 
 def followed(present: Array, delayed: Array, phase: float, value: complex, steps: int = 60) -> Crossing | None:

@@ -1,9 +1,9 @@
-"""The least critical delay of larger systems, for which the quadratic eigenproblem is too large: branch and bound.
+"""The critical delays of larger systems, for which the quadratic eigenproblem is too large: branch and bound.
 
 The quadratic eigenproblem of n states has size 2 n²: 7200 for thirty robots of one axis. Instead the phase θ of
 z = e^{−jθ} is divided into intervals. On each, Gershgorin's discs, in the basis of the eigenvectors at its middle, hold
-every eigenvalue of A₀ + z A₁: where none reaches the imaginary axis, or only at delays θ/ω longer than the least one
-found, the interval is done; else it is halved. Nothing between samples is overlooked.
+every eigenvalue of A₀ + z A₁: where none reaches the imaginary axis, or only at delays θ/ω that do not matter, such as
+ones longer than the least one found, the interval is done; else it is halved. Nothing between samples is overlooked.
 """
 
 import numpy as np
@@ -52,6 +52,28 @@ def search(present: Array, delayed: Array, below: float = np.inf) -> Crossing | 
         middle = (low + high) / 2
         pending += [(middle, high), (low, middle)]  # the shorter delays first
     return best
+
+
+def search_all(present: Array, delayed: Array) -> list[Crossing]:
+    """All crossings of ẋ = A₀ x(t) + A₁ x(t − τ), none left out, some more than once.
+
+    Args:
+        present: A₀, shape (n, n).
+        delayed: A₁, shape (n, n); no root stays on the imaginary axis whatever the delay.
+    """
+    found: list[Crossing] = []
+    pending = [(0.0, np.pi)]
+    while pending:
+        low, high = pending.pop()
+        discs = _Discs(present, delayed, low, high)
+        if discs.shortest_delay() == np.inf:
+            continue
+        if high - low <= 2 * NARROWEST:
+            found += [followed(present, delayed, at.phase, 1j * at.frequency) or at for at in discs.touching()]
+            continue
+        middle = (low + high) / 2
+        pending += [(middle, high), (low, middle)]
+    return found
 
 
 def _proven(best: Crossing | None, below: float) -> float:

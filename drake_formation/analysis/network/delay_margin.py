@@ -35,6 +35,8 @@ from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.analysis.linear.linearization import LinearFormation, own
 from drake_formation.analysis.network.crossing import Crossing, least
 from drake_formation.analysis.network.delay_crossings import first_crossing, require_stable
+from drake_formation.analysis.network.intervals import Interval, common
+from drake_formation.analysis.network.stable_delays import stable_delays
 
 Array = NDArray[np.float64]
 
@@ -44,10 +46,13 @@ Delayed = Literal["neighbour", "relative"]
 LITTLE_LAG = 0.1
 """Phase lag (rad) below which a margin is one of damping only: the virtual springs are hardly damped."""
 
+LARGEST_BLOCK = 32
+"""States of a block up to which delays beyond the margin are looked at: seconds; larger ones would take minutes."""
+
 
 @dataclass(frozen=True)
 class DelayMargin:
-    """The shortest delay of all channels at which the formation ceases to be stable.
+    """The shortest delay of all channels at which the formation ceases to be stable, and where it is stable again.
 
     Attributes:
         of: what is delayed.
@@ -56,6 +61,8 @@ class DelayMargin:
         delay_s: the margin τ* (s): stable for 0 ≤ τ < τ*; None: stable for every delay.
         frequency_rad_s: frequency of the oscillation that does not decay at τ* (rad/s); None without a limit.
         phase_rad: the lag ω τ* (rad) that uses up the damping, in (0, 2π); None without a limit.
+        stable_s: all delays at which it is stable (s); from 0 to τ* first. None: there may be others than these, in
+            blocks of more than ``LARGEST_BLOCK`` states.
     """
 
     of: Delayed
@@ -64,6 +71,7 @@ class DelayMargin:
     delay_s: float | None
     frequency_rad_s: float | None
     phase_rad: float | None
+    stable_s: tuple[Interval, ...] | None
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values with units in their keys."""
@@ -74,6 +82,7 @@ class DelayMargin:
             "delay_s": self.delay_s,
             "frequency_rad_s": self.frequency_rad_s,
             "phase_rad": self.phase_rad,
+            "again_stable_s": None if self.stable_s is None else [list(each) for each in self.stable_s[1:]],
         }
 
     def meaning(self) -> str:
@@ -89,6 +98,9 @@ class DelayMargin:
         )
         if self.phase_rad < LITTLE_LAG:
             text += ". The virtual springs are hardly damped, so hardly any lag is needed; delta_v damps them"
+        if self.stable_s is not None and len(self.stable_s) > 1:
+            again = " and ".join(f"from {low:.4g} to {high:.4g} s" for low, high in self.stable_s[1:])
+            text += f". It is stable again {again}"
         return text
 
 
@@ -98,7 +110,8 @@ def delay_margin(
     """The delay margin, from the delay eigenvalue problem of every block of the formation.
 
     All crossings of the imaginary axis are considered, in every block, and the one of least delay is the margin; see
-    :func:`~drake_formation.analysis.network.delay_crossings.first_crossing`.
+    :func:`~drake_formation.analysis.network.delay_crossings.first_crossing` and
+    :func:`~drake_formation.analysis.network.stable_delays.stable_delays`.
 
     Args:
         formation: the linearized closed loop.
@@ -113,17 +126,46 @@ def delay_margin(
         IllPosedError: there is one robot, or the loop is unstable without delay.
         ValueError: there is no such ``of``, or a gain is negative or not finite.
     """
-    delta = formation.delta if delta is None else delta
-    delta_v = formation.delta_v if delta_v is None else delta_v
-    for name, gain in (("delta", delta), ("delta_v", delta_v)):
-        if not 0 <= gain < np.inf:
-            raise ValueError(f"{name} is {gain}; it must be finite and not negative")
+    gains = _gains(formation, delta, delta_v)
+    present, delayed = delay_parts(formation, of, *gains)
+    found = shortest_delay(formation, of=of, delta=delta, delta_v=delta_v)
+    parts = distinct(blocks([present, delayed], formation.resolved.masses))
+    stable: tuple[Interval, ...] | None = (Interval(0.0, np.inf),)
+    for part in parts:
+        stable = common(stable, stable_delays(*part)) if stable is not None and len(part[0]) <= LARGEST_BLOCK else None
+    if found is None:
+        return DelayMargin(of, *gains, None, None, None, stable)
+    return DelayMargin(of, *gains, found.delay, found.frequency, found.phase, stable)
+
+
+def shortest_delay(
+    formation: LinearFormation, *, of: Delayed = "neighbour", delta: float | None = None, delta_v: float | None = None
+) -> Crossing | None:
+    """Where the delay margin ends, alone: what it takes for many of them.
+
+    Takes and refuses what :func:`delay_margin` does.
+
+    Returns:
+        The crossing of the margin; None where every delay is tolerated.
+    """
+    gains = _gains(formation, delta, delta_v)
     if formation.robots < 2:
         raise IllPosedError("one robot has no channels: a delay margin needs at least two robots")
-    found = _first_crossing(*delay_parts(formation, of, delta, delta_v), formation.resolved.masses)
-    if found is None:
-        return DelayMargin(of, delta, delta_v, None, None, None)
-    return DelayMargin(of, delta, delta_v, found.delay, found.frequency, found.phase)
+    present, delayed = delay_parts(formation, of, *gains)
+    require_stable(present + delayed)
+    best: Crossing | None = None
+    # The small blocks first: what they find spares the large ones much of the search.
+    for part in distinct(blocks([present, delayed], formation.resolved.masses)):
+        best = least([best, first_crossing(part[0], part[1], best.delay if best else np.inf)])
+    return best
+
+
+def _gains(formation: LinearFormation, delta: float | None, delta_v: float | None) -> tuple[float, float]:
+    gains = (formation.delta if delta is None else delta, formation.delta_v if delta_v is None else delta_v)
+    for name, gain in zip(("delta", "delta_v"), gains, strict=True):
+        if not 0 <= gain < np.inf:
+            raise ValueError(f"{name} is {gain}; it must be finite and not negative")
+    return gains
 
 
 def delay_parts(formation: LinearFormation, of: Delayed, delta: float, delta_v: float) -> tuple[Array, Array]:
@@ -139,12 +181,3 @@ def delay_parts(formation: LinearFormation, of: Delayed, delta: float, delta_v: 
     if of == "neighbour":
         return alone + own(consensus), consensus - own(consensus)
     raise ValueError(f"no delay of {of!r}; there are neighbour, relative")
-
-
-def _first_crossing(present: Array, delayed: Array, masses: Array) -> Crossing | None:
-    """The least over all blocks, the small ones first: what they find spares the large ones much of the search."""
-    require_stable(present + delayed)
-    best: Crossing | None = None
-    for part in distinct(blocks([present, delayed], masses)):
-        best = least([best, first_crossing(part[0], part[1], best.delay if best else np.inf)])
-    return best

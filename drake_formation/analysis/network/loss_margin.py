@@ -21,7 +21,7 @@ A margin takes some forty mean-square gains, each of which costs the cube of the
 thirty robots; 4N + 2 for every channel with ``hold``, seconds up to a hundred channels.
 """
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -30,6 +30,7 @@ from numpy.typing import NDArray
 
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.analysis.linear.linearization import LinearFormation
+from drake_formation.analysis.network.intervals import Interval, where_negative
 from drake_formation.analysis.network.mean_square import mean_square_gain
 from drake_formation.analysis.network.sampled_data import Lost, SampledLoop, longest_period, sampled_loop
 
@@ -116,34 +117,33 @@ def loss_margin(formation: LinearFormation, *, period_s: float = PERIOD, lost: L
     return LossMargin(_first_loss(loop), period_s, lost, longest)
 
 
-def _first_loss(loop: SampledLoop) -> float | None:
-    """The first loss probability at which the mean-square gain reaches 1."""
-    if not loop.out.any():
-        return None
+def stable_losses(loop: SampledLoop) -> Iterator[Interval]:
+    """The loss probabilities at which x(k+1) = (base + Σ γ_c into_c out_c) x(k) is stable in mean square.
 
-    def room(odds: float) -> float:
-        """What the gain leaves, by the logarithm of the odds p/(1 − p): negative where it is above 1."""
-        return 1 / max(mean_square_gain(loop, 1 / (1 + np.exp(odds))), 1e-9) - 1
+    ``TRIED`` ones are looked at up to ``HIGHEST``, with the peaks and dips between them. One less the first upper end
+    is the critical arrival probability: for x(k+1) = a x(k) + γ u(k), |a| > 1, whatever u, 1 − 1/a² at best (Schenato
+    et al. 2007).
+
+    Args:
+        loop: one period of a loop with packets, of which each is lost independently with the same probability.
+
+    Yields:
+        Each interval, ascending, as soon as it is found.
+    """
+
+    def excess(odds: float) -> float:
+        """Negative where the gain is below 1, by the logarithm of the odds p/(1 − p); finite also where that is not."""
+        return 1 - 1 / max(mean_square_gain(loop, 1 / (1 + np.exp(odds))), 1e-9)
 
     furthest = float(np.log(HIGHEST / (1 - HIGHEST)))
-    found = first_zero(room, np.concatenate([[NO_LOSS], np.linspace(-furthest, furthest, TRIED)]))
-    return None if found is None else float(1 / (1 + np.exp(-found)))
+    points = [NO_LOSS, *np.linspace(-furthest, furthest, TRIED)]
+    for low, high in where_negative(excess, points):
+        yield Interval(*(0.0 if end == NO_LOSS else float(1 / (1 + np.exp(-end))) for end in (low, high)))
 
 
-def first_zero(function: Callable[[float], float], points: Array) -> float | None:
-    """Where a function that is positive at the first of some points first falls to zero, as far as they tell.
-
-    Between points it is looked at where three of them show a dip.
-    """
-    from scipy.optimize import brentq, minimize_scalar
-
-    values = [function(points[0])]
-    for k in range(1, len(points)):
-        values.append(function(points[k]))
-        if k > 1 and 0 < values[k - 1] < min(values[k - 2], values[k]):
-            dip = minimize_scalar(function, bounds=(points[k - 2], points[k]), method="bounded")
-            if dip.fun <= 0:
-                return float(brentq(function, points[k - 2], dip.x, xtol=1e-12))
-        if values[k] <= 0:
-            return float(brentq(function, points[k - 1], points[k], xtol=1e-12))
-    return None
+def _first_loss(loop: SampledLoop) -> float | None:
+    """The first loss probability at which the mean-square gain reaches 1; None where it does not up to ``HIGHEST``."""
+    if not loop.out.any():
+        return None
+    high = next(stable_losses(loop)).high
+    return high if high < HIGHEST * (1 - 1e-12) else None

@@ -6,14 +6,16 @@ x(kT + T) = e^{AT} x(kT) + Ψ(T) a, with Ψ(T) = ∫ e^{As} ds over the period a
 """
 
 from dataclasses import dataclass
+from itertools import islice
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from drake_formation.analysis.linear.block_diagonal import blocks
 from drake_formation.analysis.linear.linearization import STATES, LinearFormation
 from drake_formation.analysis.network.delay_crossings import require_stable
+from drake_formation.analysis.network.intervals import Interval, where_negative
 from drake_formation.formation import graphs
 
 Array = NDArray[np.float64]
@@ -23,7 +25,10 @@ Lost = Literal["zero", "hold"]
 for the period; ``hold``, the robot goes on with what it received last from that neighbour."""
 
 STEPS_PER_CYCLE = 80
-"""Sampling periods tried within one cycle of the fastest mode, in search of the longest stable one."""
+"""Sampling periods tried within one cycle of the fastest mode."""
+
+SHORTEST = 1e-6
+"""The first period tried, in steps between the others: there the loop is as in continuous time."""
 
 
 @dataclass(frozen=True)
@@ -32,8 +37,8 @@ class SampledLoop:
 
     Attributes:
         base: the period without any packet, shape (n, n).
-        into: what a received acceleration does, by place, shape (places, n, 2).
-        out: the acceleration that a packet of each channel brings, shape (channels, 2, n).
+        into: what that which is received does, by place, shape (places, n, m); here accelerations, m = 2.
+        out: what a packet of each channel brings, shape (channels, m, n).
         place: where each channel's goes, shape (channels,): to its robot, or to a memory of its own.
     """
 
@@ -42,11 +47,14 @@ class SampledLoop:
     out: Array
     place: NDArray[np.int64]
 
-    def mean(self, arrival: float) -> Array:
-        """The mean period where packets arrive with a probability, shape (n, n)."""
+    def mean(self, arrival: ArrayLike) -> Array:
+        """The mean period where packets arrive with a probability, of all channels or of each, shape (n, n)."""
+        arrivals = np.broadcast_to(np.asarray(arrival, dtype=float), self.place.shape)
         per_place = np.zeros((len(self.into), *self.out.shape[1:]))
-        np.add.at(per_place, self.place, self.out)
-        result: Array = self.base + arrival * np.hstack(list(self.into)) @ np.vstack(list(per_place))
+        np.add.at(per_place, self.place, arrivals[:, None, None] * self.out)
+        places, size, each = self.into.shape
+        entering = self.into.transpose(1, 0, 2).reshape(size, places * each)
+        result: Array = self.base + entering @ per_place.reshape(places * each, size)
         return result
 
 
@@ -108,12 +116,44 @@ def period(matrix: Array, period_s: float) -> tuple[Array, Array]:
     return both[:size, :size], both[:size, size:]
 
 
+def stable_periods(
+    present: ArrayLike, sampled: ArrayLike, *, up_to: float, stop_at_first: bool = False
+) -> tuple[Interval, ...]:
+    """The sampling periods T at which ẋ = A₀ x(t) + A₁ x(kT), kT ≤ t < kT + T, is asymptotically stable.
+
+    State feedback u = −K x that is held is A₁ = −B K. Periods are tried in steps of a fraction of the fastest mode's
+    cycle, and between them where growth is largest or smallest.
+
+    Args:
+        present: A₀, what acts continuously (1/s), shape (n, n).
+        sampled: A₁, what acts as it was at the last sample (1/s), shape (n, n).
+        up_to: longer periods are not looked at (s).
+        stop_at_first: leave out all intervals but the first.
+
+    Returns:
+        The intervals (s), ascending.
+    """
+    always, held_back = (np.atleast_2d(np.asarray(matrix, dtype=float)) for matrix in (present, sampled))
+
+    def growth(period_s: float) -> float:
+        flow, held = period(always, period_s)
+        radius = np.abs(np.linalg.eigvals(flow + held @ held_back)).max()
+        return float(np.log(max(radius, np.finfo(float).tiny))) / period_s
+
+    fastest = max(np.abs(np.linalg.eigvals(matrix)).max() for matrix in (always, always + held_back))
+    count = max(1, int(np.ceil(up_to * fastest * STEPS_PER_CYCLE / (2 * np.pi))))
+    times = up_to * np.arange(1, count + 1) / count
+    found = where_negative(growth, [SHORTEST * times[0], *times])
+    intervals = islice(found, 1) if stop_at_first else found
+    # Periods down to none are like the shortest tried.
+    return tuple(Interval(0.0 if low == SHORTEST * times[0] else low, high) for low, high in intervals)
+
+
 def longest_period(formation: LinearFormation, *, up_to_s: float = 1.0) -> float | None:
     """The longest sampling period that the loop tolerates where no packet is lost.
 
     A force held for T is T/2 late on average, so for short periods this is twice the delay margin of the whole
-    relative term. Periods are tried in steps of a fraction of the fastest mode's cycle, and between them where
-    growth is largest, up to the first unstable one.
+    relative term. See :func:`stable_periods` for how it is found.
 
     Args:
         formation: the linearized closed loop.
@@ -129,38 +169,5 @@ def longest_period(formation: LinearFormation, *, up_to_s: float = 1.0) -> float
     require_stable(alone + consensus)
     longest = up_to_s
     for part in blocks([alone, consensus], formation.resolved.masses):
-        longest = min(longest, _first_unstable(part[0], part[1], longest))
+        longest = stable_periods(*part, up_to=longest, stop_at_first=True)[0].high
     return longest if longest < up_to_s else None
-
-
-def _first_unstable(alone: Array, sampled: Array, up_to: float) -> float:
-    """The first period (s) at which a block's spectral radius reaches 1, or ``up_to``."""
-    from scipy.optimize import brentq, minimize_scalar
-
-    def growth(period_s: float) -> float:
-        flow, held = period(alone, period_s)
-        return float(np.log(np.abs(np.linalg.eigvals(flow + held @ sampled)).max())) / period_s
-
-    fastest = max(np.abs(np.linalg.eigvals(matrix)).max() for matrix in (alone, alone + sampled))
-    count = int(np.ceil(up_to * fastest * STEPS_PER_CYCLE / (2 * np.pi)))
-    times = up_to * np.arange(1, count + 1) / count
-    rates = [growth(time) for time in times.tolist()]
-    before = 0.0
-    for k, time in enumerate(times.tolist()):
-        now = time
-        if rates[k] < 0 and 0 < k < count - 1 and rates[k] >= max(rates[k - 1], rates[k + 1]):
-            # A narrow range of unstable periods may lie between two stable ones, about where growth is largest.
-            peak = minimize_scalar(
-                lambda period_s: -growth(period_s),
-                bounds=(before, times[k + 1]),
-                method="bounded",
-                options={"xatol": 1e-9},
-            )
-            now = float(peak.x) if peak.fun <= 0 else time
-        if growth(now) >= 0:
-            # Continuous time is stable: so are periods short enough.
-            while before == 0.0 or growth(before) >= 0:
-                before = (before or now) / 2
-            return float(brentq(growth, before, now, rtol=1e-12))
-        before = now
-    return up_to

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from pydrake.systems.framework import BasicVector_, LeafSystem_
 
 from drake_formation.formation.formation import Formation
+from drake_formation.parts.objects.breaking import breaks
 from drake_formation.parts.objects.grips import GripNumbers, Motion, Pair, grip_force
 from drake_formation.parts.part import Array, Numbers, Part
 from drake_formation.systems.templates import block_template, in_double
@@ -47,7 +48,8 @@ def CarriedBody_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
         """An object that rests until the hand-off, and then is carried by all robots, each by its grip.
 
         Its state is that of its mechanics. Input ports: for every robot j ``state_j`` (m, m/s, size 4), and ``phase``
-        (0 aggregation, 1 transport). Output ports: for every robot ``grip_force_j``, what the object exerts on it (N,
+        (0 aggregation, 1 transport); where grips may break or be let go, ``intact`` and ``held`` have for every robot 1
+        while its grip acts, else 0. Output ports: for every robot ``grip_force_j``, what the object exerts on it (N,
         size 2, zero during aggregation), ``pose`` (size 6) and ``strain`` (size 1). Parameters: 0, stiffness and
         damping of a grip (N/m, N s/m); then the mechanics' groups.
         """
@@ -59,6 +61,7 @@ def CarriedBody_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             numbers: Sequence[ArrayLike],
             initial_state: ArrayLike,
             *,
+            releases: Sequence[str] = (),
             converter: Any = None,
         ) -> None:
             """Make the object.
@@ -68,29 +71,33 @@ def CarriedBody_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
                 robots: how many hold it.
                 numbers: of the grips, then what the mechanics compute with, by group.
                 initial_state: default state [q; v].
+                releases: which of the input ports ``intact`` and ``held`` to have.
                 converter: for Drake's scalar conversion.
             """
             LeafSystem_[T].__init__(self, converter=converter)
             self.arguments = (mechanics, robots, numbers, initial_state)
-            self.kind = mechanics  # all else that it computes with is a parameter
+            self.releases = tuple(releases)
+            self.kind = mechanics, self.releases  # all else that it computes with is a parameter
             self._mechanics, self._robots = mechanics, range(robots)
             self._groups, self._half = range(1, len(numbers)), np.size(initial_state) // 2
             self._states = [self.DeclareVectorInputPort(f"state_{j + 1}", STATE) for j in self._robots]
             self._phase = self.DeclareVectorInputPort("phase", 1)
+            self._releases = [self.DeclareVectorInputPort(name, robots) for name in releases]
             for group in numbers:
                 self.DeclareNumericParameter(BasicVector_[T](np.ravel(group)))
             self.DeclareContinuousState(BasicVector_[T](initial_state), self._half, self._half, 0)
             # The time ticket keeps the output fresh, as in the robots' plants.
             own = {self.xc_ticket(), self.time_ticket(), self.all_parameters_ticket()}
             for j, state in enumerate(self._states):
-                read = {self.input_port_ticket(port.get_index()) for port in (state, self._phase)}
+                ports = (state, self._phase, *self._releases)
+                read = {self.input_port_ticket(port.get_index()) for port in ports}
                 self.DeclareVectorOutputPort(f"grip_force_{j + 1}", 2, self._calc_grip_force(j), own | read)
             self.DeclareVectorOutputPort("pose", POSE, self._calc_pose, own)
-            read = {self.input_port_ticket(port.get_index()) for port in self._states}
+            read = {self.input_port_ticket(port.get_index()) for port in (*self._states, *self._releases)}
             self.DeclareVectorOutputPort("strain", 1, self._calc_strain, own | read)
 
         def _construct_copy(self, other: Any, converter: Any = None) -> None:
-            Impl._construct(self, *other.arguments, converter=converter)
+            Impl._construct(self, *other.arguments, releases=other.releases, converter=converter)
 
         def _read(self, context: Any) -> tuple[Any, list[Any]]:
             """The state and the mechanics' numbers."""
@@ -101,10 +108,18 @@ def CarriedBody_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             """What the object exerts on some robots once it is carried (N)."""
             stiffness, damping = context.get_numeric_parameter(0).CopyToVector().tolist()
             points = self._mechanics.points(state, robots, numbers)
-            return [
+            forces = [
                 grip_force(self._states[j].Eval(context).tolist(), point, stiffness, damping)
                 for j, point in zip(robots, points, strict=True)
             ]
+            return self._acting(context, robots, forces)
+
+        def _acting(self, context: Any, robots: Sequence[int], pairs: list[Pair]) -> list[Pair]:
+            """Forces or stretches of the grips that act, and nothing of the others."""
+            for port in self._releases:
+                acts = port.Eval(context).tolist()
+                pairs = [(acts[j] * x, acts[j] * y) for j, (x, y) in zip(robots, pairs, strict=True)]
+            return pairs
 
         def _calc_grip_force(self, robot: int) -> Any:
             def calc(context: Any, output: Any) -> None:
@@ -124,7 +139,8 @@ def CarriedBody_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             points = self._mechanics.points(state, self._robots, numbers)
             places = [port.Eval(context).tolist() for port in self._states]
             stretches = [(q[0] - p[0], q[1] - p[1]) for q, p in zip(places, points, strict=True)]
-            output.SetFromVector(np.array([self._mechanics.strain(state, stretches, numbers)]))
+            acting = self._acting(context, self._robots, stretches)
+            output.SetFromVector(np.array([self._mechanics.strain(state, acting, numbers)]))
 
         def DoCalcTimeDerivatives(self, context: Any, derivatives: Any) -> None:  # noqa: N802 - Drake's name
             state, numbers = self._read(context)
@@ -171,4 +187,6 @@ class CarriedObject(Part, ABC):
     def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:
         """The object."""
         start = self.initial_state(formation, owner)
-        return CarriedBody(self.mechanics(formation), formation.robots, numbers, start)
+        let_go = {"intact": breaks(formation), "held": "held" in formation.signals}
+        releases = tuple(name for name, may in let_go.items() if may)
+        return CarriedBody(self.mechanics(formation), formation.robots, numbers, start, releases=releases)

@@ -2,7 +2,8 @@
 
 from pydantic import Field
 
-from drake_formation.config.values import NonNegative, Positive, Section
+from drake_formation.config.values import NonNegative, Positive
+from drake_formation.parts.objects.breaking import LookNumbers
 from drake_formation.systems.scalars import Scalar
 
 Pair = tuple[Scalar, Scalar]
@@ -10,11 +11,15 @@ Motion = tuple[Scalar, Scalar, Scalar, Scalar]
 """Place of a point and its velocity in the world frame, x and y of each (m, m/s)."""
 
 
-class GripNumbers(Section):
+class GripNumbers(LookNumbers):
     """How the robots hold the object."""
 
     grip_stiffness: Positive = Field(default=1e4, description="stiffness of a grip k_g (N/m); chosen: 1e4")
     grip_damping: NonNegative = Field(default=400.0, description="damping of a grip c_g (N s/m); chosen: 400")
+    grip_strength: Positive | None = Field(
+        default=None,
+        description="force F_g (N) that a grip bears: beyond it, it breaks for good; default: unlimited",
+    )
 
 
 def grip_force(robot: Motion, point: Motion, stiffness: Scalar, damping: Scalar) -> Pair:

@@ -67,7 +67,7 @@ class Rigid(CarriedObject):
     """A rigid body with mass, inertia and friction with the ground, held at one point by each robot."""
 
     class Config(GripNumbers):
-        """The body, its friction, and its grips."""
+        """The body, its friction, and its grips; a friction that is more than all grips bear is refused."""
 
         mass: Positive = Field(default=20.0, description="mass m (kg); chosen: 20")
         inertia: Positive = Field(
@@ -83,11 +83,6 @@ class Rigid(CarriedObject):
             default=0.05,
             description="speed ε (m/s) that smooths friction about rest, μ m g v/√(v² + ε²): far below it the object "
             "creeps; chosen: 0.05",
-        )
-        grip_strength: Positive | None = Field(
-            default=None,
-            description="force F_g (N) that a grip holds; an object whose friction is more than all grips hold is "
-            "refused; default: unlimited",
         )
 
     def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:  # noqa: ARG002

@@ -22,7 +22,9 @@ from drake_formation.parts.robots.wheels import (
     what_is_lacking,
     wheel_forces,
     wheel_jacobian,
+    wheel_speeds,
     within_limit,
+    within_motor,
 )
 from drake_formation.systems.scalars import Scalar, cos, sin
 
@@ -35,30 +37,31 @@ HeadingCost = Annotated[tuple[Positive, NonNegative], Field(strict=False)]
 
 def omnidirectional_motion(
     inner: list[Scalar],
-    _velocity: Pair,
+    velocity: Pair,
     control: Pair,
     spring: Pair,
     body: list[Scalar],
     steering: list[Scalar],
     jacobian: list[Scalar],
     inverse: list[Scalar],
-    *limit: list[Scalar],
+    *limits: list[Scalar],
 ) -> tuple[Scalar, ...]:
     """How a body on wheels moves that holds the object at its centre.
 
     The control u, turned into the body's frame, and the torque τ = −k (φ − φ_r) − d φ̇ are exerted by the wheels:
-    f = J⁺ [Rᵀu; τ], each cut to the limit. Then m v̇ = R (J f)_xy + s and J_z φ̈ = (J f)_τ. Without a limit J J⁺ = I,
+    f = J⁺ [Rᵀu; τ], each cut to its limits. Then m v̇ = R (J f)_xy + s and J_z φ̈ = (J f)_τ. Without a limit J J⁺ = I,
     and the centre moves as the point mass does, whatever the heading.
 
     Args:
         inner: heading φ (rad) and its rate (rad/s).
+        velocity: of the centre, in the world frame (m/s).
         control: u, in the world frame (N).
         spring: what the object exerts, s (N).
         body: m (kg) and J_z (kg m²).
         steering: φ_r (rad), k (N m/rad) and d (N m s/rad).
         jacobian: J of the wheels, row by row.
         inverse: its pseudo-inverse J⁺, row by row.
-        limit: the largest force of a wheel (N), one number; nothing for no limit.
+        limits: the largest force of a wheel (N) and, where it is limited, its largest speed (m/s); nothing for none.
 
     Returns:
         v̇ (m/s²), x and y; the heading's rate (rad/s) and its rate (rad/s²).
@@ -68,8 +71,13 @@ def omnidirectional_motion(
     c, s = cos(heading), sin(heading)
     torque = -(stiffness * (heading - kept) + damping * rate)
     forces = wheel_forces((c * ux + s * uy, c * uy - s * ux, torque), inverse)
-    for (largest,) in limit:
-        forces = [within_limit(force, largest) for force in forces]
+    for largest, *fastest in limits:
+        if fastest:
+            vx, vy = velocity
+            speeds = wheel_speeds((c * vx + s * vy, c * vy - s * vx, rate), jacobian)
+            forces = [within_motor(f, w, largest, *fastest) for f, w in zip(forces, speeds, strict=True)]
+        else:
+            forces = [within_limit(force, largest) for force in forces]
     fx, fy, turn = body_wrench(forces, jacobian)
     return (c * fx - s * fy + sx) / mass, (s * fx + c * fy + sy) / mass, rate, turn / inertia
 
@@ -129,6 +137,11 @@ class Omnidirectional(Robot):
         wheel_force_limit: Positive | None = Field(
             default=None, description="largest force of a wheel (N); default: unlimited"
         )
+        wheel_speed_limit: Positive | None = Field(
+            default=None,
+            description="largest speed of a wheel along its line (m/s), up to which the force that drives it on falls "
+            "from wheel_force_limit to 0; default: unlimited",
+        )
 
     dynamics = staticmethod(omnidirectional_motion)
 
@@ -161,6 +174,9 @@ class Omnidirectional(Robot):
         elif lacking := what_is_lacking(*self.angles):
             key, value = ("wheel_angles", wheels) if push is None else ("push_angles", push)
             yield Fault((key,), lacking, shown(value), "a layout that pushes in every direction and turns")
+        if self.config.wheel_speed_limit is not None and self.config.wheel_force_limit is None:
+            message, limit = "how hard the wheels push at rest is not said", self.config.wheel_speed_limit
+            yield Fault(("wheel_speed_limit",), message, shown(limit), "also wheel_force_limit (N)")
         if not np.isfinite(self.gain).all():
             message = f"Drake finds no gain for a moment of inertia of {self.config.inertia:g} kg m²"
             yield Fault(
@@ -168,12 +184,13 @@ class Omnidirectional(Robot):
             )
 
     def own_numbers(self) -> Numbers:
-        """Body, steering, the wheels' Jacobian and its pseudo-inverse, and the limit where there is one."""
+        """Body, steering, the wheels' Jacobian and its pseudo-inverse, and the wheels' limits where there are any."""
         config = self.config
         jacobian = wheel_jacobian(*self.angles, config.wheel_distance)
         body, steering = np.array([config.mass, config.inertia]), np.array([self.kept, *self.gain])
-        limit = () if config.wheel_force_limit is None else (np.array([config.wheel_force_limit]),)
-        return body, steering, jacobian.ravel(), np.linalg.pinv(jacobian).ravel(), *limit
+        given = [limit for limit in (config.wheel_force_limit, config.wheel_speed_limit) if limit is not None]
+        limits = (np.array(given),) if given else ()
+        return body, steering, jacobian.ravel(), np.linalg.pinv(jacobian).ravel(), *limits
 
     def inner_state(self) -> Array:
         """The heading, no further from that to keep than half a turn, and no rate."""

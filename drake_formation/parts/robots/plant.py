@@ -31,7 +31,10 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
         Its state is [q; v; z]: position and velocity of that point in the world frame (m, m/s), and the inner states
         of its dynamics, such as a heading. Input ports: ``force`` (N, size 2), ``phase`` (0 aggregation, 1 transport:
         the springs are engaged), per neighbour j ``spring_j`` (the neighbour's state, size 4), and where the object is
-        a body of its own ``load``, what that exerts (N, size 2). Output ports: ``state`` x = [q; v], ``spring_force``
+        a body of its own ``load``, what that exerts (N, size 2). Where springs may break or be let go, ``intact`` and
+        ``held`` have for each neighbour 1 while its spring acts, else 0; where the robot may fail, ``failure`` has the
+        share of the control force that its drives give, 0 while its brakes take up all forces and else 1, and 1/τ
+        (1/s) of v̇ = −v/τ while they do, else 0. Output ports: ``state`` x = [q; v], ``spring_force``
         −Σ F_ij and the load (N) and, unless it is the sum of the forces by the mass, ``acceleration`` v̇ (m/s²).
         Parameters: the groups of the dynamics; last, for each neighbour in port order the numbers of the spring law
         and the desired displacement h_i − h_j (m, two numbers).
@@ -48,6 +51,8 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             *,
             acceleration: bool = True,
             load: bool = False,
+            releases: Sequence[str] = (),
+            may_fail: bool = False,
             converter: Any = None,
         ) -> None:
             """Make the plant.
@@ -61,12 +66,15 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
                 initial_state: default state [q; v; z], shape (4 + inner states,).
                 acceleration: whether to have that output port.
                 load: whether to have that input port.
+                releases: which of the input ports ``intact`` and ``held`` to have.
+                may_fail: whether to have the input port ``failure``.
                 converter: for Drake's scalar conversion.
             """
             LeafSystem_[T].__init__(self, converter=converter)
             self.arguments = (dynamics, neighbours, law, numbers, springs, initial_state)
-            self.acceleration, self.load = acceleration, load
-            self.kind = dynamics, law, load  # all else that it computes with is a parameter
+            self.options = {"acceleration": acceleration, "load": load, "releases": releases, "may_fail": may_fail}
+            # All else that it computes with is a parameter.
+            self.kind = dynamics, law, load, tuple(releases), may_fail
             self._dynamics, self._law = dynamics, law.law
             self._groups, self._columns = range(len(numbers)), len(law.arguments()) + 2
             self._zero = T(0.0)
@@ -74,6 +82,8 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             self._phase = self.DeclareVectorInputPort("phase", 1)
             self._springs = [self.DeclareVectorInputPort(f"spring_{j}", 4) for j in neighbours]
             self._load = self.DeclareVectorInputPort("load", 2) if load else None
+            self._releases = [self.DeclareVectorInputPort(name, len(neighbours)) for name in releases]
+            self._failure = self.DeclareVectorInputPort("failure", 3) if may_fail else None
             for group in (*numbers, springs):
                 self.DeclareNumericParameter(BasicVector_[T](np.ravel(group)))
             self.DeclareContinuousState(BasicVector_[T](initial_state), 2, 2, np.size(initial_state) - 4)
@@ -81,7 +91,7 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             # telling the caches, but it always tells them the time.
             fresh_state = {self.xc_ticket(), self.time_ticket()}
             self.DeclareVectorOutputPort("state", 4, self._calc_state, fresh_state)
-            held = [self._phase, *self._springs, *([self._load] if self._load else [])]
+            held = [self._phase, *self._springs, *self._releases, *([self._load] if self._load else [])]
             coupled_ports = {self.input_port_ticket(port.get_index()) for port in held}
             self.DeclareVectorOutputPort(
                 "spring_force",
@@ -94,8 +104,7 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
                 self.DeclareVectorOutputPort("acceleration", 2, self._calc_acceleration, fresh_state | all_read)
 
         def _construct_copy(self, other: Any, converter: Any = None) -> None:
-            options = {"acceleration": other.acceleration, "load": other.load}
-            Impl._construct(self, *other.arguments, **options, converter=converter)
+            Impl._construct(self, *other.arguments, **other.options, converter=converter)
 
         def _calc_state(self, context: Any, output: Any) -> None:
             output.SetFromVector(context.get_continuous_state_vector().CopyToVector()[:4])
@@ -114,9 +123,12 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             springs = table.reshape(-1, self._columns).tolist()
             fx = fy = self._zero
             law = self._law
-            for port, numbers in zip(self._springs, springs, strict=True):
+            released = [port.Eval(context).tolist() for port in self._releases]
+            for k, (port, numbers) in enumerate(zip(self._springs, springs, strict=True)):
                 nx, ny, nvx, nvy = port.Eval(context).tolist()
                 gx, gy = law(x - nx, y - ny, vx - nvx, vy - nvy, *numbers)
+                for acts in released:
+                    gx, gy = acts[k] * gx, acts[k] * gy
                 fx, fy = fx - gx, fy - gy  # -= would change an Expression in place
             if self._load is None:
                 return phase * fx, phase * fy
@@ -128,7 +140,12 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             control = self._force.Eval(context).tolist()
             spring = self._spring_force(context, *state[:4])
             numbers = [context.get_numeric_parameter(k).CopyToVector().tolist() for k in self._groups]
-            return self._dynamics(state[4:], state[2:4], control, spring, *numbers)
+            if self._failure is None:
+                return self._dynamics(state[4:], state[2:4], control, spring, *numbers)
+            drive, free, braking = self._failure.Eval(context).tolist()
+            driven = [drive * u for u in control]
+            ax, ay, *inner = self._dynamics(state[4:], state[2:4], driven, spring, *numbers)
+            return free * ax - braking * state[2], free * ay - braking * state[3], *inner
 
         def DoCalcTimeDerivatives(self, context: Any, derivatives: Any) -> None:  # noqa: N802 - Drake's name
             state = context.get_continuous_state_vector().CopyToVector().tolist()

@@ -12,7 +12,7 @@ from drake_formation.formation.formation import Formation
 from drake_formation.parts.part import Numbers, SpringLaw
 from drake_formation.parts.registry import part
 from drake_formation.parts.robots.plant import Pair, PlanarRobot
-from drake_formation.parts.robots.robot import Robot, RobotNumbers, held_robots
+from drake_formation.parts.robots.robot import Robot, RobotNumbers, held_robots, options
 from drake_formation.systems.scalars import Scalar
 
 
@@ -59,9 +59,10 @@ def RobotPlant(  # noqa: N802 - makes a block, as its class would
     springs: ArrayLike,
     initial_state: ArrayLike,
     *,
-    load: bool = False,
+    may_fail: bool = False,
+    **options: Any,
 ) -> Any:
-    """The plant of a free mass, whose acceleration is the forces on it by its mass.
+    """The plant of a free mass, whose acceleration is the forces on it by its mass unless it fails.
 
     Args:
         neighbours: numbers of the physically coupled robots (from 1), which name the spring ports.
@@ -69,9 +70,11 @@ def RobotPlant(  # noqa: N802 - makes a block, as its class would
         mass: m_i (kg), shape (1,).
         springs: numbers of the law and displacement of each spring, shape (neighbours, numbers + 2).
         initial_state: default state [q; v], shape (4,).
-        load: whether the object is a body of its own, which exerts a load.
+        may_fail: whether its drives may fail and its brakes lock.
+        options: further ones of :class:`drake_formation.parts.robots.plant.PlanarRobot`.
     """
-    return PlanarRobot(free_mass, neighbours, law, [mass], springs, initial_state, acceleration=False, load=load)
+    failing = {"acceleration": may_fail, "may_fail": may_fail}
+    return PlanarRobot(free_mass, neighbours, law, [mass], springs, initial_state, **failing, **options)
 
 
 @part("robot", kind="point_mass")
@@ -86,6 +89,7 @@ class PointMass(Robot):
         )
 
     dynamics = staticmethod(dragged_mass)
+    may_fail = True
 
     def own_numbers(self) -> Numbers:
         """The mass, and the drag where there is any."""
@@ -98,5 +102,5 @@ class PointMass(Robot):
             return super().block(formation, owner, numbers)
         mass, springs = numbers
         start = self.initial_state(formation, owner)
-        neighbours, load = held_robots(formation, owner), formation.has_body
-        return RobotPlant(neighbours, formation.law, mass, springs, start, load=load)
+        neighbours = held_robots(formation, owner)
+        return RobotPlant(neighbours, formation.law, mass, springs, start, **options(formation, owner))

@@ -7,6 +7,7 @@ from pydantic import Field
 
 from drake_formation.config.values import Positive, Section, Velocity
 from drake_formation.formation.formation import Formation
+from drake_formation.parts.objects.breaking import breaks
 from drake_formation.parts.part import Array, Numbers, Part
 from drake_formation.parts.robots.plant import Dynamics, PlanarRobot
 
@@ -26,10 +27,12 @@ class Robot(Part):
 
     Attributes:
         dynamics: see :data:`drake_formation.parts.robots.plant.Dynamics`.
+        may_fail: whether its drives may fail and its brakes lock: all that moves it is the control force then.
     """
 
     Config = RobotNumbers
     dynamics: ClassVar[Dynamics]
+    may_fail: ClassVar[bool] = False
 
     def own_numbers(self) -> Numbers:
         """What its dynamics compute with, by group."""
@@ -47,11 +50,24 @@ class Robot(Part):
         """The plant."""
         *own, springs = numbers
         start, neighbours = self.initial_state(formation, owner), held_robots(formation, owner)
-        return PlanarRobot(self.dynamics, neighbours, formation.law, own, springs, start, load=formation.has_body)
+        return PlanarRobot(self.dynamics, neighbours, formation.law, own, springs, start, **options(formation, owner))
 
     def initial_state(self, formation: Formation, owner: int) -> Array:
         """At its starting position, with its starting velocity."""
         return np.concatenate([formation.starts[owner], self.config.velocity, self.inner_state()])
+
+
+def options(formation: Formation, robot: int) -> dict[str, Any]:
+    """What a robot's plant has ports for beyond those that all have."""
+    springs_break = breaks(formation) and not formation.has_body and formation.springs.neighbours[robot]
+    releases = ["intact"] if springs_break else []
+    if not formation.has_body and f"held_{robot + 1}" in formation.signals:
+        releases.append("held")
+    return {
+        "load": formation.has_body,
+        "releases": tuple(releases),
+        "may_fail": f"failure_{robot + 1}" in formation.signals,
+    }
 
 
 def held_robots(formation: Formation, robot: int) -> list[int]:

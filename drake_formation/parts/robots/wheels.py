@@ -6,7 +6,7 @@ Such a wheel pushes along one line alone, the axis of the roller on which it sta
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from drake_formation.systems.scalars import Scalar, at_least
+from drake_formation.systems.scalars import Scalar, at_least, lesser
 
 Array = NDArray[np.float64]
 
@@ -82,6 +82,39 @@ def body_wrench(forces: list[Scalar], jacobian: list[Scalar]) -> list[Scalar]:
     count = len(forces)
     rows = (jacobian[k * count : (k + 1) * count] for k in range(3))
     return [sum(a * f for a, f in zip(row, forces, strict=True)) for row in rows]
+
+
+def wheel_speeds(motion: tuple[Scalar, Scalar, Scalar], jacobian: list[Scalar]) -> list[Scalar]:
+    """The speed of each wheel along its own line: w = Jᵀ [v; ω].
+
+    Args:
+        motion: velocity in the body's frame (m/s) and turning rate (rad/s).
+        jacobian: J row by row, three rows of as many numbers.
+
+    Returns:
+        w, one number a wheel (m/s).
+    """
+    vx, vy, turning = motion
+    count = len(jacobian) // 3
+    columns = (jacobian[k::count] for k in range(count))
+    return [a * vx + b * vy + c * turning for a, b, c in columns]
+
+
+def within_motor(force: Scalar, speed: Scalar, stall: Scalar, fastest: Scalar) -> Scalar:
+    """A force cut to what a direct-current motor can do at a speed, within ±stall and its torque-speed line (N).
+
+    At rest it exerts the stall force either way; the faster the wheel, the less drives it on, and nothing at the
+    fastest, as its back EMF says (Siciliano et al., *Robotics*, 2009, Sec. 5.2.1). Braking takes the stall force.
+
+    Args:
+        force: asked for (N).
+        speed: of the wheel along its line (m/s).
+        stall: the force at rest (N).
+        fastest: speed at which none is left (m/s).
+    """
+    most = lesser(stall, stall - stall * speed / fastest)
+    least = at_least(-stall - stall * speed / fastest, -stall)
+    return at_least(lesser(force, most), least)
 
 
 def within_limit(force: Scalar, limit: Scalar) -> Scalar:

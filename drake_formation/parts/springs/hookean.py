@@ -8,7 +8,7 @@ from pydantic import Field
 from drake_formation.config.errors import Fault, shown
 from drake_formation.config.values import NonNegative, Section
 from drake_formation.formation.formation import Formation
-from drake_formation.parts.part import RestNumbers, SpringLaw
+from drake_formation.parts.part import BreakNumbers, RestNumbers, SpringLaw
 from drake_formation.parts.registry import part
 from drake_formation.systems.scalars import Scalar
 
@@ -50,8 +50,8 @@ class Stiffness(Section):
     damping: NonNegative = Field(default=0.0, description="c_ij (N s/m), one for all or one an edge; published: none")
 
 
-class SpringNumbers(RestNumbers, Stiffness):
-    """Stiffness and damping of one spring, and where it is at rest."""
+class SpringNumbers(BreakNumbers, RestNumbers, Stiffness):
+    """Stiffness and damping of one spring, where it is at rest, and when it breaks."""
 
 
 class Spring(SpringLaw):

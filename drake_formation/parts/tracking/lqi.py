@@ -10,12 +10,12 @@ from pydantic import Field
 from pydrake.systems.controllers import LinearQuadraticRegulator
 
 from drake_formation.config.errors import Fault
-from drake_formation.config.values import CostMatrix, Section
+from drake_formation.config.values import CostMatrix
 from drake_formation.formation.formation import Formation
 from drake_formation.parts.part import Numbers
 from drake_formation.parts.registry import part
 from drake_formation.parts.tracking.costs import cost_matrix, designed_poles, input_cost_faults, state_cost_faults
-from drake_formation.parts.tracking.integral_controller import IntegralController
+from drake_formation.parts.tracking.integral_controller import IntegralController, Windup, release_matrix
 from drake_formation.parts.tracking.lqr import robot_matrices
 from drake_formation.parts.tracking.regulator import Regulator
 
@@ -53,7 +53,7 @@ def lqi_gain(mass: float, state_cost: ArrayLike, input_cost: ArrayLike) -> Array
 class Lqi(Regulator):
     """LQR with integral action on the position's error."""
 
-    class Config(Section):
+    class Config(Windup):
         """Its weights."""
 
         Q: CostMatrix = Field(
@@ -80,6 +80,11 @@ class Lqi(Regulator):
     def gain(self, mass: float) -> Array:
         """K, shape (2, 6), in N/m, N s/m and N/(m s)."""
         return lqi_gain(mass, cost_matrix(self.config.Q, STATES), cost_matrix(self.config.R, 2))
+
+    def numbers(self, formation: Formation, owner: int) -> Numbers:
+        """The gain, the mass in the feed-forward, the slot, and what its anti-windup takes."""
+        gain, *others = super().numbers(formation, owner)
+        return gain, *others, *release_matrix(formation, owner, gain, self.config.anti_windup)
 
     def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:  # noqa: ARG002
         """The controller."""

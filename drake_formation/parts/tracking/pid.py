@@ -7,11 +7,11 @@ import numpy as np
 from pydantic import Field
 
 from drake_formation.config.errors import Fault, shown
-from drake_formation.config.values import NonNegative, Positive, Section
+from drake_formation.config.values import NonNegative, Positive
 from drake_formation.formation.formation import Formation
 from drake_formation.parts.part import Numbers, Part
 from drake_formation.parts.registry import part
-from drake_formation.parts.tracking.integral_controller import IntegralController
+from drake_formation.parts.tracking.integral_controller import IntegralController, Windup, release_matrix
 
 
 @part("tracking", kind="pid")
@@ -21,7 +21,7 @@ class Pid(Part):
     The poles of one robot alone are the roots of m s³ + k_d s² + k_p s + k_i (Åström & Hägglund 2006, Sec. 4.4).
     """
 
-    class Config(Section):
+    class Config(Windup):
         """Its gains."""
 
         kp: Positive = Field(default=1.0, description="proportional gain k_p (N/m); chosen: the paper's LQR of 40 kg")
@@ -40,11 +40,12 @@ class Pid(Part):
             yield Fault(("ki",), message, shown(config.ki), f"below kp kd / mass = {most:g} N/(m s)")
 
     def numbers(self, formation: Formation, owner: int) -> Numbers:
-        """The gain, the mass in the feed-forward, and the slot."""
+        """The gain, the mass in the feed-forward, the slot, and what its anti-windup takes."""
         config = self.config
         gain = np.kron([config.kp, config.kd, config.ki], np.eye(2))
         inertia = formation.masses[owner] if config.feed_forward else 0.0
-        return gain, np.array([inertia]), formation.slots[owner]
+        release = release_matrix(formation, owner, gain, config.anti_windup)
+        return gain, np.array([inertia]), formation.slots[owner], *release
 
     def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:  # noqa: ARG002
         """The controller."""

@@ -63,6 +63,10 @@ def _steps(scenario: Scenario) -> Iterator[Fault]:
     if duration > MOST_STEPS * longest:
         message = f"{duration / longest:.2g} steps and more are too many for {duration:g} s"
         yield Fault(("simulator", "max_step_size"), message, shown(longest), f"at least {duration / MOST_STEPS:g} s")
+    looks, carried = getattr(scenario.object, "look_every", None), scenario.transport.duration
+    if looks and carried > MOST_STEPS * looks:
+        message = f"{carried / looks:.2g} looks are too many for {carried:g} s"
+        yield Fault(("object", "look_every"), message, shown(looks), f"at least {carried / MOST_STEPS:g} s")
 
 
 @cache

@@ -1,5 +1,6 @@
 """H2 and H∞ norms: known resonances, dense grids, laws of both."""
 
+import networkx as nx
 import numpy as np
 import pytest
 from hypothesis import assume, given
@@ -55,6 +56,19 @@ def test_a_damped_oscillator_gives_way_most_at_rest(frequency, damping):
 def test_h2_norm_of_an_oscillator(frequency, damping):
     expected = (4 * damping * frequency**3) ** -0.5
     np.testing.assert_allclose(h2_norm(oscillator(frequency, damping)), expected, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("graph", "known"),
+    [(nx.path_graph(10), 8.25), (nx.cycle_graph(10), 4.125), (nx.complete_graph(10), 0.45)],
+    ids=["path", "ring", "complete"],
+)
+def test_noisy_consensus_of_single_integrators(graph, known):
+    """Σ 1/(2 λ) about the mean, which wanders off and does not matter (Bamieh, Jovanović, Mitra and Patterson 2012)."""
+    agreement = StateSpace(-nx.laplacian_matrix(graph).toarray(), np.eye(10), np.eye(10) - np.ones((10, 10)) / 10)
+    assert h2_norm(agreement) ** 2 == pytest.approx(known, abs=5e-7)
+    with pytest.raises(IllPosedError, match="not asymptotically stable"):
+        h2_norm(agreement._replace(C=np.eye(10)))
 
 
 @given(rng=generators)

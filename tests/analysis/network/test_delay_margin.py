@@ -97,6 +97,19 @@ def test_weak_consensus_tolerates_every_delay():
     assert delay_margin(loop, of="relative", delta=1.01 * limit).delay_s is not None
 
 
+def test_a_longer_delay_may_be_stable_again():
+    """Weak virtual springs: on either side of every end, roots of the whole loop say so."""
+    loop = formation(consensus__delta=3.0, consensus__delta_v=1.0)
+    margin = delay_margin(loop)
+    assert margin.stable_s[0] == (0.0, margin.delay_s)
+    assert len(margin.stable_s) == 3
+    for low, high in margin.stable_s[1:]:
+        for delay, side in ((0.99 * low, 1), (1.01 * low, -1), (0.99 * high, -1), (1.01 * high, 1)):
+            assert side * rightmost(*delay_parts(loop, "neighbour", 3.0, 1.0), delay, points=40) > 0
+    assert "stable again from 10.76 to 16.63 s and from 24.92 to 27.16 s" in margin.meaning()
+    assert margin.to_dict()["again_stable_s"] == [list(each) for each in margin.stable_s[1:]]
+
+
 def test_delayed_neighbours_drag_on_the_common_motion_and_relative_delay_does_not():
     loop, delay = polygon(8, springs__stiffness=0.0, consensus__delta=1e4), 0.0008
     together = np.kron(np.ones(8), [1.0, 0.0, 0.0, 0.0]), np.kron(np.ones(8), [0.0, 0.0, 1.0, 0.0])
@@ -278,4 +291,4 @@ def test_it_says_what_it_means_and_gives_plain_values():
     assert "hardly any lag" in margin.meaning()
     assert set(margin.to_dict()) >= {"of", "delay_s", "frequency_rad_s"}
     assert type(margin.to_dict()["delay_s"]) is float
-    assert "any age" in DelayMargin("relative", 1.0, 0.0, None, None, None).meaning()
+    assert "any age" in DelayMargin("relative", 1.0, 0.0, None, None, None, ((0.0, np.inf),)).meaning()

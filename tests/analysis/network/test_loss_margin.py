@@ -11,8 +11,8 @@ from strategies import scenarios
 from drake_formation import load_scenario
 from drake_formation.analysis import linearize
 from drake_formation.analysis.linear.errors import IllPosedError
-from drake_formation.analysis.network.loss_margin import HIGHEST, LossMargin, first_zero, loss_margin
-from drake_formation.analysis.network.sampled_data import longest_period, sampled_loop
+from drake_formation.analysis.network.loss_margin import HIGHEST, LossMargin, loss_margin, stable_losses
+from drake_formation.analysis.network.sampled_data import SampledLoop, longest_period, sampled_loop
 
 
 def formation(name="line", **overrides):
@@ -187,11 +187,21 @@ def test_monte_carlo_of_the_diagrams_blocks(lost, side):
     check_rate(np.array(ratios), rate, side)
 
 
-def test_the_first_zero_is_found_even_in_a_dip_between_points():
-    points = np.linspace(0.0, 3.0, 10)
-    assert first_zero(lambda x: 2.0 - x, points) == pytest.approx(2.0)
-    assert first_zero(lambda x: (x - 1.5) ** 2 - 1e-4, points) == pytest.approx(1.49, abs=1e-6)
-    assert first_zero(lambda x: (x - 1.5) ** 2 + 1e-4, points) is None
+@given(growth=st.floats(1.01, 5.0))
+def test_the_critical_arrival_probability_of_one_unstable_state(growth):
+    """x(k+1) = a x(k) + γ u(k) with u = −a x: arrivals must be likelier than 1 − 1/a² (Schenato et al. 2007)."""
+    (stable,) = stable_losses(scalar(growth))
+    assert stable == pytest.approx((0.0, 1 / growth**2), rel=1e-9)
+
+
+def test_the_known_critical_arrival_probability():
+    (stable,) = stable_losses(scalar(1.25))
+    assert 1 - stable.high == pytest.approx(0.36, abs=5e-7)
+
+
+def scalar(growth):
+    one = np.ones((1, 1, 1))
+    return SampledLoop(np.array([[growth]]), one, -growth * one, np.array([0]))
 
 
 def test_ill_posed_questions_are_refused():

@@ -1,5 +1,7 @@
 """The sampled loop: a period is what the diagram's blocks do in one, and the longest stable one is where it turns."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from channels import OpenChannels
@@ -11,7 +13,13 @@ from strategies import scenarios
 from drake_formation import load_scenario
 from drake_formation.analysis import linearize
 from drake_formation.analysis.network.delay_margin import delay_margin
-from drake_formation.analysis.network.sampled_data import channels, longest_period, period, sampled_loop
+from drake_formation.analysis.network.sampled_data import (
+    channels,
+    longest_period,
+    period,
+    sampled_loop,
+    stable_periods,
+)
 
 several = st.integers(2, 4)
 
@@ -118,3 +126,34 @@ def test_a_narrow_range_of_unstable_periods_is_not_stepped_over():
         "consensus.delta_v": 32.89953503879047,
     }
     assert longest_period(linearize(load_scenario("line", overrides=overrides))) == pytest.approx(0.7619, abs=1e-4)
+
+
+def test_the_known_sampling_limit_of_held_state_feedback():
+    present, gains = np.array([[0.0, 1.0], [0.0, -0.1]]), np.array([[3.75, 11.5]])
+    (stable,) = stable_periods(present, -np.array([[0.0], [0.1]]) @ gains, up_to=10.0)
+    assert stable == pytest.approx((0.0, 1.729414), abs=5e-7)
+
+
+@given(rate=st.floats(0.01, 100.0), share=st.floats(0.01, 0.9) | st.floats(-0.99, -0.01))
+def test_the_sampling_limit_of_one_state(rate, share):
+    """ẋ = a x − b x(kT): e^{aT} (1 − b/a) + b/a = −1, T = ln((b + a)/(b − a))/a."""
+    decay = share * rate
+    limit = np.log((rate + decay) / (rate - decay)) / decay
+    (stable,) = stable_periods(decay, -rate, up_to=2 * limit)
+    assert stable == pytest.approx((0.0, limit), rel=1e-9)
+
+
+def test_held_feedback_calms_an_oscillator_but_about_whole_turns():
+    """ẍ = 0.02 ẋ − x + 0.2 x(kT), which held for a whole turn or half of one does next to nothing."""
+    present, sampled = np.array([[0.0, 1.0], [-1.0, 0.02]]), np.array([[0.0, 0.0], [0.2, 0.0]])
+
+    def radius(seconds):
+        flow = expm(seconds * present)
+        return np.abs(np.linalg.eigvals(flow + np.linalg.solve(present, flow - np.eye(2)) @ sampled)).max()
+
+    stable = stable_periods(present, sampled, up_to=12.0)
+    assert len(stable) >= 3
+    ends = np.array(stable).ravel()
+    np.testing.assert_allclose([radius(end) for end in ends[(ends > 0) & (ends < 12)]], 1.0, atol=1e-9)
+    assert all(radius((low + high) / 2) < 1 for low, high in stable)
+    assert all(radius((before.high + after.low) / 2) > 1 for before, after in pairwise(stable))

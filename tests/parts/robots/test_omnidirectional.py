@@ -17,8 +17,8 @@ MECANUM = {"robots.wheel_angles": [45, 135, 225, 315], "robots.push_angles": [-4
 pairs = st.tuples(st.floats(-1e3, 1e3), st.floats(-1e3, 1e3))
 
 
-def moved(part, inner, control, spring):
-    return omnidirectional_motion(inner, (0.0, 0.0), control, spring, *(group.tolist() for group in part.own_numbers()))
+def moved(part, inner, control, spring, velocity=(0.0, 0.0)):
+    return omnidirectional_motion(inner, velocity, control, spring, *(group.tolist() for group in part.own_numbers()))
 
 
 @given(st.floats(-10, 10), pairs, pairs)
@@ -72,6 +72,27 @@ def test_limited_wheels_do_what_they_can():
     assert moved(part, *small) == moved(free, *small)
 
 
+def test_wheels_at_their_largest_speed_drive_no_further_but_brake():
+    part = Omnidirectional(Omnidirectional.Config(wheel_force_limit=10.0, wheel_speed_limit=2.0, mass=1.0))
+    # Along the heading the first of three wheels stands still; the others run at sin 60 deg of the robot's speed.
+    share = np.sqrt(3) / 2
+    for speed, driven in ((0.0, 20.0), (1.0 / share, 10.0), (2.0 / share, 0.0)):
+        assert moved(part, [0.0, 0.0], (1e6, 0.0), (0.0, 0.0), (speed, 0.0))[0] == pytest.approx(driven * share)
+        assert moved(part, [0.0, 0.0], (-1e6, 0.0), (0.0, 0.0), (speed, 0.0))[0] == pytest.approx(-20.0 * share)
+
+
+def test_a_robot_gathers_the_speed_that_its_wheels_allow():
+    """One robot that is called far away: m v̇ = F (1 − v/v₀) for two wheels, by their torque-speed line."""
+    limits = {"robots.wheel_force_limit": 10.0, "robots.wheel_speed_limit": 2.0}
+    far = {"robots.start": [[0.0, 0.0]], "transport": {"goal": [900.0, 0.0], "duration": 8.0}}
+    one = {"formation": {"shape": "line", "robots": 1, "side": 1.0}, "robots.kind": "omnidirectional"}
+    start = {"aggregation.duration": 0.0, "avoidance": {"obstacles": []}, "robots.heading": 0.0}
+    result = simulate(load_scenario("line", overrides=one | far | start | limits))
+    force, fastest = 2 * 10.0 * np.sqrt(3) / 2, 2.0 / (np.sqrt(3) / 2)
+    expected = fastest * (1 - np.exp(-force / (40.0 * fastest) * result["time"].values))
+    np.testing.assert_allclose(result["velocity"].values[:, 0, 0], expected, atol=1e-5)
+
+
 @pytest.mark.parametrize("engine", ["blocks", "compiled"])
 def test_with_limited_wheels_the_recorded_acceleration_is_that_of_the_motion(engine):
     overrides = SHORT | FIXED | OMNI | {"robots.wheel_force_limit": 2.0, "aggregation.duration": 0.0}
@@ -99,6 +120,7 @@ def test_a_formation_may_have_robots_of_several_kinds():
         ({"robots.wheel_angles": {"2": [0, 0, 120]}}, r"robots.wheel_angles.2: .*rank 2, not 3"),
         ({"robots.wheel_distance": 0.0}, r"robots.wheel_distance: out of range"),
         ({"robots.inertia": 1e-300}, r"robots.heading_cost: Drake finds no gain"),
+        ({"robots.wheel_speed_limit": 2.0}, r"robots.wheel_speed_limit: .* also wheel_force_limit"),
         ({"robots.drag": 1.0}, r"robots.drag: unknown key"),
     ],
 )

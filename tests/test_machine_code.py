@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from drake_formation.lowering import cache
+from drake_formation import machine_code
 
 SOURCE = """from numba import njit
 
@@ -16,12 +16,12 @@ SOURCE = """from numba import njit
 def twice(x):
     return 2.0 * x
 """
-LOAD = f"from drake_formation.lowering import cache; print(cache.load({SOURCE!r}).twice(2.0))"
+LOAD = f"from drake_formation import machine_code; print(machine_code.load({SOURCE!r}).twice(2.0))"
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    monkeypatch.setenv(cache.FOLDER, str(tmp_path))
+    monkeypatch.setenv(machine_code.FOLDER, str(tmp_path))
     return tmp_path
 
 
@@ -53,7 +53,7 @@ def test_a_damaged_entry_is_made_anew(folder):
 
 def test_a_folder_that_cannot_be_made_is_done_without(folder, monkeypatch):
     (folder / "file").write_text("")
-    monkeypatch.setenv(cache.FOLDER, str(folder / "file"))
+    monkeypatch.setenv(machine_code.FOLDER, str(folder / "file"))
     assert loaded_elsewhere() == 4.0
 
 
@@ -65,7 +65,7 @@ def test_a_disk_without_room_for_the_machine_code_is_done_without(folder):
 
 
 def test_a_folder_that_is_made_is_its_users_alone(tmp_path, monkeypatch):
-    monkeypatch.setenv(cache.FOLDER, str(tmp_path / "new" / "cache"))
+    monkeypatch.setenv(machine_code.FOLDER, str(tmp_path / "new" / "cache"))
     assert loaded_elsewhere() == 4.0
     assert (tmp_path / "new" / "cache").stat().st_mode & 0o777 == 0o700
 

@@ -5,8 +5,9 @@ under another name and moved into place when it is complete, so that several pro
 whose checksums are wrong is made again. In one process modules are made one after the other, and nobody sees one that
 is not complete.
 
-The text is all that is compiled: it imports nothing of this package. So an entry is known by the text and by what turns
-it into machine code, and a changed package that writes another text has another entry.
+The text is all that is compiled: it imports nothing of this package, at the most other modules made here, whose names
+tell their text. So an entry is known by the text and by what turns it into machine code, and a changed package that
+writes another text has another entry.
 
 Machine code from a folder that others may write to would be theirs to choose: such a folder is not read. A folder that
 is made here is its user's alone.

@@ -1,0 +1,1 @@
+"""What becomes of the control force asked of a robot."""

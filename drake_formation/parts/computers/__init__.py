@@ -1,0 +1,1 @@
+"""When a robot works out its control force."""

@@ -1,0 +1,1 @@
+"""How a robot knows its own state."""

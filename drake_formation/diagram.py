@@ -101,7 +101,8 @@ def wired(formation: Formation) -> Diagram:
     if any("sensed" in _input_names(robot) for robot in robots):
         _sense_nearest(builder, robots, formation, parameters)
     if any("visible" in _input_names(robot) for robot in robots):
-        block = LineOfSight(*parameters["line_of_sight"], formation.obstacles.layout)
+        obstacles, footprints, _ = parameters["line_of_sight"]
+        block = LineOfSight(obstacles, footprints, formation.obstacles.layout)
         _sense(builder, robots, block, "line_of_sight", "visible")
     for i, robot in enumerate(robots):
         for output in (*ROBOT_OUTPUTS, ACCELERATION, DEMANDED, MEASURED):

@@ -55,7 +55,8 @@ def block_parameters(formation: Formation) -> Parameters:
     if "numbers" not in formation.kept:
         result: Parameters = {"consensus_error": (formation.slots,), "sensing": _sensing(formation)}
         if any(getattr(part.config, "line_of_sight", False) for part in formation.parts["avoidance"]):
-            result["line_of_sight"] = formation.obstacles.numbers, formation.footprints
+            layout = np.array(formation.obstacles.layout, dtype=float)
+            result["line_of_sight"] = formation.obstacles.numbers, formation.footprints, layout
         result |= _failing(formation)
         for path, part, owner in placed_parts(formation):
             if groups := part.numbers(formation, owner):

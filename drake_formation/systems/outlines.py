@@ -51,20 +51,6 @@ def offsets(x: Scalar, y: Scalar, time: Scalar, numbers: Sequence[Scalar], layou
             yield _from_polygon(px, py, list(zip(vertices[::2], vertices[1::2], strict=True)), radius)
 
 
-def edges(
-    time: Scalar, numbers: Sequence[Scalar], layout: Layout
-) -> Iterator[tuple[list[tuple[Scalar, Scalar, Scalar, Scalar]], Scalar]]:
-    """The edges of each obstacle at a time, of each where it begins and ends (m), and the radius (m).
-
-    A circle's is its centre, where it begins and ends.
-    """
-    for vertices, radius, motion in _rows(numbers, layout):
-        mx, my = _displacement(time, motion) if motion else (0.0, 0.0)
-        corners = [(x + mx, y + my) for x, y in zip(vertices[::2], vertices[1::2], strict=True)]
-        begins = corners if len(corners) != 2 else corners[:1]
-        yield [(*a, *b) for a, b in zip(begins, corners[1:] + corners[:1], strict=False)], radius
-
-
 def _rows(numbers: Sequence[Scalar], layout: Layout) -> Iterator[tuple[Sequence[Scalar], Scalar, Sequence[Scalar]]]:
     """The vertices, the radius and the motion of each obstacle."""
     at = 0

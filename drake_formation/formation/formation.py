@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.formation.links import Channels, Edges
+from drake_formation.formation.obstacles import Obstacles
 from drake_formation.formation.stages import Signals, Stage, signals
 
 Array = NDArray[np.float64]
@@ -34,7 +35,8 @@ class Formation:
         goal: where the formation centre is carried to (m), shape (2,).
         springs: which robots the object couples, E edges; none where it is a body of its own.
         channels: which robots hear which, C channels with weights.
-        obstacles: x, y and radius of each (m), shape (M, 3).
+        obstacles: M of them.
+        footprints: radius of every robot about where it holds the object, 0 for a point (m), shape (N,).
         begin: when the scenario begins (s).
         aggregation_duration: how long the robots gather before the hand-off (s).
         transport_duration: how long they carry after it (s).
@@ -54,7 +56,8 @@ class Formation:
     goal: Array
     springs: Edges
     channels: Channels
-    obstacles: Array
+    obstacles: Obstacles
+    footprints: Array
     begin: float
     aggregation_duration: float
     transport_duration: float
@@ -65,7 +68,7 @@ class Formation:
     stages: tuple[Stage, ...] = ()
 
     def __post_init__(self) -> None:
-        for array in (self.slots, self.starts, self.centre, self.goal, self.obstacles):
+        for array in (self.slots, self.starts, self.centre, self.goal, self.footprints):
             array.setflags(write=False)
 
     @cached_property
@@ -102,6 +105,11 @@ class Formation:
     def radius(self) -> float:
         """Radius of the circle about the formation centre that holds every slot (m)."""
         return float(np.linalg.norm(self.slots, axis=1).max())
+
+    @cached_property
+    def extent(self) -> float:
+        """Radius of the circle about the formation centre that holds every robot in its slot (m)."""
+        return float((np.linalg.norm(self.slots, axis=1) + self.footprints).max())
 
     @cached_property
     def masses(self) -> Array:

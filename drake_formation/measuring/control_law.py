@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,8 +44,9 @@ BLOCKS = ("tracking", "consensus", "avoidance")
 def control_law(formation: Formation, times: Array, recorded: Array) -> "ControlLaw | StagedLaw | RecordedForces":
     """The control u of every robot during transport (paper, Eq. 8), as a function of time and state.
 
-    Where a robot has parts of other kinds, which may have states of their own, or where robots remember
-    what they sense or keep away from each other, it is read off what was recorded.
+    Where a robot has parts of other kinds, which may have states of their own, where robots remember what they sense,
+    keep away from each other or have footprints, or where obstacles are no circles or move, it is read off what was
+    recorded.
 
     Args:
         formation: what ran.
@@ -53,7 +55,8 @@ def control_law(formation: Formation, times: Array, recorded: Array) -> "Control
     """
     known = all(isinstance(part, kinds) for role, kinds in KNOWN.items() for part in formation.parts[role])
     wired = all(getattr(channel, "is_wire", False) for channel in formation.parts["channel"])
-    if known and wired and not any(part.margin or part.config.robots for part in formation.parts["avoidance"]):
+    simple = known and wired and not formation.footprints.any() and formation.obstacles.are_circles
+    if simple and not any(map(_is_more, formation.parts["avoidance"])):
         return StagedLaw(formation) if formation.stages else ControlLaw(formation)
     return RecordedForces(formation, times, recorded)
 
@@ -88,6 +91,12 @@ class RecordedForces:
         return force
 
 
+def _is_more(field: Part) -> bool:
+    """Whether a field around obstacles goes by more than where robots and obstacles are."""
+    config: Any = field.config
+    return bool(getattr(field, "margin", 0.0) or config.robots or config.line_of_sight)
+
+
 class ControlLaw:
     """The control by parts that are all ``KNOWN``.
 
@@ -113,7 +122,7 @@ class ControlLaw:
         ]
         self._consensus_gains = gains
         self._range, self._gain = np.array([group[0] for group in own["avoidance"]]).T
-        self._obstacles = formation.obstacles
+        self._obstacles = formation.obstacles.discs
         fields = formation.parts["avoidance"]
         self._masked = np.array([field.masked for field in fields])
         self._feels = np.array([field.feels(formation, i) for i, field in enumerate(fields)], dtype=float)

@@ -63,6 +63,17 @@ class Motion:
         position, velocity, acceleration = self.at(step, share[:, None])
         return position[:, 0], velocity[:, 0], acceleration[:, 0]
 
+    def with_samples_at(self, times: Array) -> "Motion":
+        """The same motion with samples at further times too, as far as it goes on then (s)."""
+        inside = times[(times > self.times[0]) & (times < self.times[-1])]
+        more = np.setdiff1d(inside, self.times)
+        if not len(more):
+            return self
+        order = np.argsort(np.concatenate([self.times, more]), kind="stable")
+        own = (self.position, self.velocity, self.acceleration)
+        joined = [np.concatenate(pair)[order] for pair in zip(own, self.at_times(more), strict=True)]
+        return Motion(np.concatenate([self.times, more])[order], *joined)
+
     def bulge(self) -> Array:
         """How far each point leaves the chord of each step at the most (m), shape (samples − 1, points).
 

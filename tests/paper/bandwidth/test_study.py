@@ -3,7 +3,6 @@
 import networkx as nx
 import pytest
 
-from drake_formation.analysis.topology.rigid_shapes import minimally_rigid_shapes
 from drake_formation.formation import graphs
 from drake_formation.formation.rigidity import rigidity_rank
 from drake_formation.paper.bandwidth.graphs import ROBOTS, Placed, placed_graphs
@@ -20,7 +19,6 @@ def test_every_graph_is_kept(robots):
     ]
     slots = resolve(formation(robots)).slots
     assert all(one.rank == rigidity_rank(slots, graphs.edges(one.graph)) for one in found[::11])
-    assert len({one.shape for one in found if one.minimally_rigid}) <= len(minimally_rigid_shapes(robots))
 
 
 @pytest.mark.slow

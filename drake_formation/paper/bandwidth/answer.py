@@ -119,7 +119,7 @@ def by_robots_table(found: Findings) -> str:
             [
                 f"{robots}",
                 f"{2 * (robots - 1)}, {2 * rigid_rank(robots)}, {robots * (robots - 1)}",
-                f"{found.alone(robots).errors['hookean']:.2f}",
+                f"{found.alone[robots].errors['hookean']:.2f}",
                 *(_range([one.errors["hookean"] for one in kind]) for kind in kinds),
                 _range([one.errors["linear"] for one in of.connected]),
             ]

@@ -29,7 +29,7 @@ def by_channels(found: Findings, numbers: Sequence[int]) -> Figure:
 def _panel(axes: Axes, robots: int, found: Findings) -> None:
     needed, fewest, most = 2 * rigid_rank(robots), 2 * (robots - 1), robots * (robots - 1)
     axes.axvspan(0, needed - 1, color="0.95", zorder=0, linewidth=0)
-    alone = found.alone(robots).errors["hookean"]
+    alone = found.alone[robots].errors["hookean"]
     axes.axhline(alone, color="0.3", linestyle="--", linewidth=1, label="local LQR alone")
     _points(axes, found.flexible, "hookean", "o", "tab:red", "on distances, flexible")
     _points(axes, found.braced, "hookean", "o", "tab:blue", "on distances, rigid")

@@ -55,17 +55,19 @@ class Findings:
         """Those of so many robots."""
         return Findings([one for one in self.tried if one.robots == robots])
 
-    def alone(self, robots: int) -> Tried:
-        """So many robots that do not talk."""
-        return next(one for one in self.tried if one.robots == robots and not one.channels)
+    @cached_property
+    def alone(self) -> dict[int, Tried]:
+        """Robots that do not talk, by their number."""
+        return {one.robots: one for one in self.tried if not one.channels}
 
-    def complete(self, robots: int) -> Tried:
-        """So many robots that all talk."""
-        return next(one for one in self.tried if one.robots == robots and one.channels == robots * (robots - 1))
+    @cached_property
+    def complete(self) -> dict[int, Tried]:
+        """Robots that all talk, by their number."""
+        return {one.robots: one for one in self.tried if one.channels == one.robots * (one.robots - 1)}
 
     def ratios(self, tried: Iterable[Tried], law: str = "hookean", best: str = "hookean") -> list[float]:
         """Errors under a law as multiples of that of the complete graph under another."""
-        return [one.errors[law] / self.complete(one.robots).errors[best] for one in tried]
+        return [one.errors[law] / self.complete[one.robots].errors[best] for one in tried]
 
 
 def framework(one: Tried) -> Rigidity:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from itertools import permutations
 
 import networkx as nx
@@ -39,13 +40,14 @@ def placed_graphs(robots: int) -> list[Placed]:
     return [Placed(k, graph) for k, shape in enumerate(shapes(robots)) for graph in _placements(shape, robots)]
 
 
-def shapes(robots: int) -> list[nx.Graph]:
+@cache
+def shapes(robots: int) -> tuple[nx.Graph, ...]:
     """No channels at all, then connected graphs: all of them up to 7 robots; beyond, those that ``covered`` says."""
     if robots <= MOST_CLASSED:
         connected = [graph for alike in connected_shapes(robots).values() for graph in alike]
     else:
-        connected = distinct([*minimally_rigid_shapes(robots), *_known(robots), *_sampled(robots)])
-    return [nx.empty_graph(robots), *connected]
+        connected = distinct([*_minimally_rigid(robots), *_known(robots), *_sampled(robots)])
+    return nx.empty_graph(robots), *connected
 
 
 def covered(robots: int) -> str:
@@ -54,13 +56,18 @@ def covered(robots: int) -> str:
     if robots <= MOST_CLASSED:
         shape = f"all {count} connected graphs"
     else:
-        rigid = len(minimally_rigid_shapes(robots))
+        rigid = len(_minimally_rigid(robots))
         shape = (
             f"all {rigid} minimally rigid graphs, {SAMPLED} drawn at random for each number of edges, path, star, "
             f"cycle, the complete graph and that of one robot less with one hanging on: {count}"
         )
     placed = PLACEMENTS.get(robots)
     return f"{shape}, with robots placed in {f'{placed} random' if placed else 'all'} way{'s' * (placed != 1)}"
+
+
+@cache
+def _minimally_rigid(robots: int) -> tuple[nx.Graph, ...]:
+    return tuple(minimally_rigid_shapes(robots))
 
 
 def _known(robots: int) -> list[nx.Graph]:

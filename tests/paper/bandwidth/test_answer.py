@@ -30,7 +30,7 @@ def test_the_fewest_channels_that_make_a_shape_rigid_do_as_well_as_all(found, ro
 
 
 def test_a_complete_polygon_resists_every_change_of_shape_with_half_its_robots(found):
-    assert [framework(found.complete(robots)).softest for robots in ROBOTS] == pytest.approx(
+    assert [framework(found.complete[robots]).softest for robots in ROBOTS] == pytest.approx(
         [robots / 2 for robots in ROBOTS]
     )
 

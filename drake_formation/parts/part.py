@@ -134,12 +134,12 @@ class BreakNumbers(Section):
 
     break_at_strain: Positive | None = Field(
         default=None,
-        description="largest |d/r − 1| (1) that the spring bears: beyond it, it breaks for good; one for all or one an "
-        "edge; default: any",
+        description="strain |d/r − 1| (1), longer or shorter, beyond which a spring breaks for good; one for all or "
+        "one an edge; default: none",
     )
     break_at_force: Positive | None = Field(
         default=None,
-        description="largest ‖F_ij‖ (N) that the spring bears, likewise; one for all or one an edge; default: any",
+        description="force ‖F_ij‖ (N) beyond which it does, likewise; one for all or one an edge; default: none",
     )
 
 

@@ -13,7 +13,8 @@ from drake_formation.parts.avoidance.khatib import ObstacleAvoidance
 from drake_formation.parts.avoidance.rotational import rotational_force
 from drake_formation.parts.computers.sampled import DelayedHold
 from drake_formation.parts.coordination.consensus import ConsensusController
-from drake_formation.parts.objects.breaking import Breaking, SpringsBear
+from drake_formation.parts.objects.bearing import SpringsBear
+from drake_formation.parts.objects.breaking import Breaking
 from drake_formation.parts.references.set_point import SetPoint
 from drake_formation.parts.robots.omnidirectional import Omnidirectional
 from drake_formation.parts.robots.plant import PlanarRobot

@@ -48,8 +48,14 @@ diagrams: $(VENV)/installed
 	for name in line quadrilateral octagon s_curve; do \
 		$(BIN)/drake-formation graphviz $$name -o diagrams/$$name.svg || exit; \
 	done
+	for name in delay lossy link-failure saturated switching; do \
+		$(BIN)/drake-formation run $$name --out out/$$name || exit; \
+		cp out/$$name/figures/overview.png diagrams/$$name.png; \
+	done
 	$(BIN)/drake-formation run line --out out/line
 	cp out/line/figures/paths.png diagrams/line-paths.png
+	$(BIN)/drake-formation run robot-failure --out out/robot-failure
+	cp out/robot-failure/figures/paths.png diagrams/robot-failure.png
 	$(BIN)/drake-formation reproduce --only fig11 --out out/paper
 	cp out/paper/figures/fig11.png diagrams/paper-fig11.png
 	$(BIN)/drake-formation sweep gains --out out/gains

@@ -86,7 +86,7 @@ def _draw_figures(folder: Path, result: xr.Dataset) -> dict[str, str]:
     failed: dict[str, str] = {}
 
     def draw() -> None:
-        from drake_formation.viz.figures import write_figures  # Matplotlib itself may be out of order
+        from drake_formation.viz.run_figures import write_figures  # Matplotlib itself may be out of order
 
         failed.update(write_figures(result, folder / PICTURES))
 

@@ -1,6 +1,7 @@
 """The control forces on all robots along a motion, by the laws of the blocks, many times at once."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,12 +35,15 @@ KNOWN: dict[str, tuple[type[Part], ...]] = {
 }
 """The parts whose laws are here; all are functions of time and the robots' states alone."""
 
+BLOCKS = ("tracking", "consensus", "avoidance")
+"""The blocks of a robot whose forces add up to its control."""
+
 
 def control_law(formation: Formation, times: Array, recorded: Array) -> Law:
     """The control u of every robot during transport (paper, Eq. 8), as a function of time and state.
 
     Where a robot has parts of other kinds, which may have states of their own, or where robots remember
-    what they sense or keep away from each other, or fail, it is read off what was recorded: on the straight line
+    what they sense or keep away from each other, it is read off what was recorded: on the straight line
     between two samples.
 
     Args:
@@ -49,9 +53,8 @@ def control_law(formation: Formation, times: Array, recorded: Array) -> Law:
     """
     known = all(isinstance(part, kinds) for role, kinds in KNOWN.items() for part in formation.parts[role])
     wired = all(getattr(channel, "is_wire", False) for channel in formation.parts["channel"])
-    simple = known and wired and not formation.stages
-    if simple and not any(part.margin or part.config.robots for part in formation.parts["avoidance"]):
-        return ControlLaw(formation)
+    if known and wired and not any(part.margin or part.config.robots for part in formation.parts["avoidance"]):
+        return StagedLaw(formation) if formation.stages else ControlLaw(formation)
 
     def between(at: Array, position: Array, _velocity: Array) -> Array:
         columns = recorded.reshape(len(times), -1).T
@@ -155,5 +158,26 @@ class ControlLaw:
         return np.where(self._masked, seen, 1.0)
 
 
-BLOCKS = ("tracking", "consensus", "avoidance")
-"""The blocks of a robot whose forces add up to its control."""
+class StagedLaw:
+    """The control by such parts where robots fail: zero where its drives have, and in each stage as the others respond.
+
+    Args:
+        formation: the robots' formation.
+    """
+
+    def __init__(self, formation: Formation) -> None:
+        self._begins = [stage.time for stage in formation.stages]
+        self._laws = []
+        for stage in formation.stages:
+            channels = formation.channels
+            weights = channels.weights * stage.heeded[channels.pairs].prod(axis=1)
+            changes = {"slots": stage.slots, "channels": replace(channels, weights=weights), "stages": ()}
+            self._laws.append((ControlLaw(formation.changed(**changes)), stage.drive))
+
+    def __call__(self, times: Array, position: Array, velocity: Array) -> Array:
+        """Control forces (N); see :data:`Law`."""
+        result, reached = np.empty_like(position), np.searchsorted(self._begins, times, "right") - 1
+        for k, (law, drive) in enumerate(self._laws):
+            now = reached == k
+            result[now] = law(times[now], position[now], velocity[now]) * drive[:, None]
+        return result

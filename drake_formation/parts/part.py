@@ -106,6 +106,11 @@ class Part:
         """The block's continuous state at the start; None where its default is right for every scenario."""
         return None
 
+    def period(self) -> float | None:
+        """How often the block's discrete state is updated (s), by which run times are estimated; None: never."""
+        configured: float | None = getattr(self.config, "period", None)
+        return configured
+
     def initial_discrete_state(self, formation: Formation, owner: int) -> Numbers | None:  # noqa: ARG002
         """The block's discrete state at the start, one array a group; None where its default is right for all."""
         return None

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.formation.formation import Formation
+from drake_formation.parameters import placed_parts
 from drake_formation.parts.objects.breaking import looks_every
 from drake_formation.parts.objects.carried import CarriedObject
 from drake_formation.parts.tracking.lqr import Lqr, lqr_gain
@@ -22,6 +23,8 @@ COMPILE_SECONDS = 5.0
 """Tracing a diagram and compiling it, as on its first use."""
 ROBOT_SECONDS, COUPLING_SECONDS, OBSTACLE_SECONDS = 3e-4, 6e-5, 1e-5
 """What a step of the blocks takes for each robot, each spring or channel, and each obstacle of each robot."""
+UPDATE_SECONDS = 6e-5
+"""What an update of a sampled block takes."""
 STABLE, ACCURATE = 3.3, 0.3
 """Longest step times the fastest rate: where that has died out, and where it rings at an accuracy of 1e-6."""
 FADED = 20.0
@@ -68,7 +71,16 @@ def blocks_seconds(scenario: Scenario) -> float:
     step += COUPLING_SECONDS * couplings
     transports = 2 if felt_obstacles(formation) else 1
     aggregation = steps(scenario, formation.aggregation_duration, carrying=False)
-    return step * (aggregation + transports * steps(scenario, formation.transport_duration, carrying=True))
+    transport = steps(scenario, formation.transport_duration, carrying=True)
+    duration = formation.aggregation_duration + transports * formation.transport_duration
+    updates = duration * sum(1 / period for period in _periods(formation))
+    return step * (aggregation + transports * transport) + UPDATE_SECONDS * updates
+
+
+def _periods(formation: Formation) -> list[float]:
+    """How often the blocks that are sampled look (s), one of each."""
+    periods = [part.period() for _, part, _ in placed_parts(formation)]
+    return [period for period in periods if period]
 
 
 def steps(scenario: Scenario, duration: float, *, carrying: bool) -> float:
@@ -83,6 +95,7 @@ def steps(scenario: Scenario, duration: float, *, carrying: bool) -> float:
     """
     settings = scenario.simulator
     looks = duration / looks_every(resolve(scenario)) if carrying else 0.0  # a step ends wherever one looks for breaks
+    looks += duration * max((1 / period for period in _periods(resolve(scenario))), default=0.0)
     if not settings.use_error_control:
         return duration / settings.max_step_size + looks
     stiffness, damping = _largest_rates(resolve(scenario), carrying)

@@ -54,6 +54,9 @@ AUTO = "auto"
 MOST_STEPS = 200_000
 """A run that would need more of them, as its obstacles are so small, is refused."""
 
+JUST_BEFORE = 1e-6
+"""How long before a failure a sample is taken (s)."""
+
 
 def simulate(scenario: Scenario, *, engine: str = AUTO, progress: Progress | None = None) -> "xr.Dataset":
     """Run a scenario from its initial state to its end.
@@ -253,10 +256,15 @@ def _ready(engine: str, diagram: Diagram, formation: Formation) -> Start:
 
 
 def _advance(run: Engine, formation: Formation, end: float) -> None:
-    """Go on to a time (s), by the failures on the way, so that samples at them show what is so from then on."""
-    now = run.context.get_time()
+    """Go on to a time (s), by the failures on the way.
+
+    Samples at them show what is so from then on; others just before show what was, as what is read between samples
+    is drawn from the one to the next.
+    """
+    begin = run.context.get_time()
     for stage in formation.stages:
-        if now < stage.time < end:
+        if begin < stage.time < end:
+            run.advance(max(run.context.get_time(), stage.time - JUST_BEFORE))
             run.advance(stage.time)
             run.carry_out_updates()
     run.advance(end)

@@ -1,9 +1,5 @@
 """Figures of a run: paths, errors, spring lengths and forces, as the paper shows them."""
 
-from collections.abc import Callable
-from functools import partial
-from pathlib import Path
-
 import numpy as np
 import xarray as xr
 from matplotlib import colormaps
@@ -13,7 +9,6 @@ from matplotlib.patches import Circle
 
 from drake_formation.vectors import length
 from drake_formation.viz.events import draw_events, mark_events
-from drake_formation.viz.style import draw_each
 
 SNAPSHOTS = 7
 """Formation snapshots drawn along the way, hand-off and end included."""
@@ -85,7 +80,7 @@ def spring_lengths(result: xr.Dataset) -> Figure:
             label=None if many else f"{spring}: {float(result['rest_length'].sel(spring=spring)):.3g} m at rest",
         )
     axes.set(xlabel="time (s)", ylabel="spring elongation d − r (cm)", title=_title(result, "springs"))
-    _mark_transport(axes, result, only=True)
+    mark_transport(axes, result, only=True)
     if many:
         axes.set_title(f"{_title(result, 'springs')}, all {result.sizes['spring']}")
     elif result.sizes["spring"]:
@@ -104,29 +99,14 @@ def control_forces(result: xr.Dataset) -> Figure:
     figure = Figure(figsize=(8, 8), layout="constrained")
     rows = list(figure.subplots(len(parts), sharex=True))
     for axes, (name, label) in zip(rows, parts.items(), strict=True):
-        _draw_history(axes, result, length(result[name]))
+        draw_history(axes, result, length(result[name]))
         axes.set_ylabel(label)
         axes.set_ylim(0.0, max(1.05 * axes.dataLim.y1, 1e-3))
-        _mark_transport(axes, result)
+        mark_transport(axes, result)
     rows[0].set_title(_title(result, "control forces"))
     rows[-1].set_xlabel("time (s)")
     _legend(rows[0])
     return figure
-
-
-FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
-    "paths": paths,
-    "tracking_error": tracking_error,
-    "consensus_error": consensus_error,
-    "spring_lengths": spring_lengths,
-    "control_forces": control_forces,
-}
-"""Every figure of a run, by the name of its file."""
-
-
-def write_figures(result: xr.Dataset, folder: Path) -> dict[str, str]:
-    """Draw every figure of a run as a PNG file in a folder that exists; gives those that failed, and why."""
-    return draw_each({name: partial(draw, result) for name, draw in FIGURES.items()}, folder)
 
 
 def robot_colours(result: xr.Dataset) -> dict[int, tuple[float, ...]]:
@@ -153,21 +133,22 @@ def _history(
 ) -> Figure:
     figure = Figure(figsize=(8, 4), layout="constrained")
     axes = figure.subplots()
-    _draw_history(axes, result, series)
+    draw_history(axes, result, series)
     axes.set(xlabel="time (s)", ylabel=label, title=_title(result, subject))
-    _mark_transport(axes, result, only=transport_only)
+    mark_transport(axes, result, only=transport_only)
     _legend(axes)
     return figure
 
 
-def _draw_history(axes: Axes, result: xr.Dataset, series: xr.DataArray) -> None:
+def draw_history(axes: Axes, result: xr.Dataset, series: xr.DataArray) -> None:
+    """Draw a series of every robot over time."""
     for k, (robot, colour) in enumerate(robot_colours(result).items()):
         # Later robots are dashed: two robots often do the same, and one line would hide the other.
         style = "-" if k % 2 == 0 else (k, (4, 3))
         axes.plot(result["time"], series.sel(robot=robot), color=colour, linestyle=style, linewidth=1.2, label=robot)
 
 
-def _mark_transport(axes: Axes, result: xr.Dataset, only: bool = False) -> None:
+def mark_transport(axes: Axes, result: xr.Dataset, only: bool = False) -> None:
     """Grid, what happened, and where the object is carried."""
     axes.grid(alpha=0.3)
     mark_events(axes, result)

@@ -61,7 +61,7 @@ def test_both_phases_of_the_shipped_scenarios(name, phase):
     diagram = build_diagram(load_scenario(name))
     compiled = lower(diagram)
     context = diagram.CreateDefaultContext()
-    context.get_mutable_discrete_state_vector().SetFromVector([phase])
+    diagram.GetSubsystemByName("phase").GetMyMutableContextFromRoot(context).SetDiscreteState([phase])
     rng = np.random.default_rng(0)
     state = context.get_continuous_state_vector().CopyToVector()
     for _ in range(5):

@@ -5,7 +5,7 @@ from probe import context_at, robot_outputs
 from strategies import generators, random_state, scenarios
 
 from drake_formation import build_diagram, load_scenario, simulate, with_overrides
-from drake_formation.measuring.control_law import ControlLaw, control_law
+from drake_formation.measuring.control_law import ControlLaw, StagedLaw, control_law
 from drake_formation.scenario import resolve
 
 
@@ -39,6 +39,26 @@ def test_the_law_follows_a_trajectory_as_the_diagram_does(feed_forward):
     law = ControlLaw(resolve(scenario))
     found = law(*(carried[name].values for name in ("time", "position", "velocity")))
     np.testing.assert_allclose(found, carried["control_force"], rtol=0, atol=1e-9)
+
+
+def test_the_law_knows_what_fails_and_what_the_others_do():
+    lost = {"robot": 2, "time": 1.0, "kind": "stops_actuating", "response": "re_form", "notice_after": 0.5}
+    freezes = {"robot": 4, "time": 2.0, "kind": "freezes", "response": "drop_neighbour", "repaired_at": 2.5}
+    scenario = load_scenario(
+        "quadrilateral",
+        overrides={
+            "aggregation.duration": 0.0,
+            "transport.duration": 3.0,
+            "consensus": {"delta": 50.0, "delta_v": 5.0},
+            "failures": [lost, freezes],
+        },
+    )
+    result = simulate(scenario, engine="blocks")
+    law = control_law(resolve(scenario), np.zeros(0), np.zeros(0))
+    found = law(*(result[name].values for name in ("time", "position", "velocity")))
+    assert isinstance(law, StagedLaw)
+    assert float(np.abs(result["control_force"].sel(robot=2, time=slice(1.0, None))).max()) == 0
+    np.testing.assert_allclose(found, result["control_force"], rtol=0, atol=1e-9)
 
 
 def test_only_the_robot_nearest_to_an_obstacle_is_pushed_where_only_that_senses_it():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from drake_formation import load_scenario, simulate
-from drake_formation.viz import figures
+from drake_formation.viz import figures, run_figures
 
 QUICK = {"aggregation.duration": 3.0, "transport.duration": 8.0, "robots.start": {"centre": [2.5, 3.5]}}
 AT_REST = {"aggregation.duration": 0.0, "transport.goal": [2.5, 3.5]}
@@ -18,14 +18,14 @@ def result():
 
 
 def test_every_figure_is_written(result, tmp_path):
-    assert figures.write_figures(result, tmp_path) == {}
-    assert {path.stem for path in tmp_path.iterdir()} == set(figures.FIGURES)
+    assert run_figures.write_figures(result, tmp_path) == {}
+    assert {path.stem for path in tmp_path.iterdir()} == set(run_figures.FIGURES)
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("name", figures.FIGURES)
+@pytest.mark.parametrize("name", run_figures.FIGURES)
 def test_every_axis_has_a_label_with_its_unit(result, name):
-    axes = figures.FIGURES[name](result).axes
+    axes = run_figures.FIGURES[name](result).axes
     assert axes[-1].get_xlabel()
     assert all("(" in ax.get_ylabel() for ax in axes)
 
@@ -83,4 +83,6 @@ def test_every_robot_has_a_colour_of_its_own():
 def test_figures_of_what_is_missing_are_drawn_too(overrides, tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert figures.write_figures(simulate(load_scenario("line", overrides={**QUICK, **overrides})), tmp_path) == {}
+        assert (
+            run_figures.write_figures(simulate(load_scenario("line", overrides={**QUICK, **overrides})), tmp_path) == {}
+        )

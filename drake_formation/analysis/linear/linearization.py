@@ -24,6 +24,7 @@ from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.diagram import build_diagram
 from drake_formation.formation.formation import Formation
 from drake_formation.parameters import find_block, has_block, placed_parts, robot_name
+from drake_formation.parts.objects.breaking import BOUNDS, breaks
 from drake_formation.parts.part import Part
 from drake_formation.scenario import Scenario, resolve, with_overrides
 from drake_formation.sources import OWN
@@ -39,6 +40,7 @@ NOT_COVERED = (
     "large displacements: springs are linearized about the formation at rest; a rotated formation has other ones",
     "saturation: forces are taken as unlimited",
     "the hand-off: the object is in place",
+    "failures and breaks: no robot has failed, and every spring holds",
 )
 """What a linearization about the formation at rest says nothing about."""
 
@@ -174,7 +176,7 @@ def at_rest(scenario: Scenario) -> Scenario:
     """The scenario as it is linearized: in formation at the goal, in transport, without obstacles, over wires.
 
     Drake's ``Linearize(diagram, diagram.CreateDefaultContext())`` takes the diagram built from it. It does not take one
-    with a hand-off, whose phase is discrete state.
+    with discrete state, as the hand-off, failures and breaks are: none of these is in it.
 
     Args:
         scenario: any sound scenario.
@@ -194,6 +196,11 @@ def at_rest(scenario: Scenario) -> Scenario:
     }
     if getattr(scenario.robots, "velocity", None) not in (None, (0.0, 0.0)):
         changes["robots.velocity"] = [0.0, 0.0]
+    if scenario.failures:
+        changes["failures"] = []
+    if breaks(resolve(scenario)):
+        names = ["object.grip_strength"] if resolve(scenario).has_body else [f"springs.{name}" for name in BOUNDS]
+        changes |= dict.fromkeys(names)
     return with_overrides(scenario, changes)
 
 

@@ -37,6 +37,10 @@ class Delay(Channel):
     def _span(self) -> float:
         return float(self.config.delay / self.config.pieces)
 
+    def period(self) -> float | None:
+        """How often a state is kept (s)."""
+        return self._span or None
+
     def structure(self) -> Hashable:
         """Delay and pieces, with which a block is made."""
         return self.config.delay, self.config.pieces

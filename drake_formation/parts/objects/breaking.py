@@ -15,6 +15,9 @@ from drake_formation.parts.part import Array, Numbers, SpringLaw
 from drake_formation.systems.scalars import Scalar, at_least, at_most
 from drake_formation.systems.templates import block_template, in_double
 
+BOUNDS = ("break_at_strain", "break_at_force")
+"""What a spring bears, by the fields that say so."""
+
 
 class LookNumbers(Section):
     """How often what holds the object is looked at."""
@@ -202,8 +205,7 @@ def _bounds(formation: Formation) -> Array:
     if formation.has_body:
         (carried,) = formation.parts["object"]
         return np.full(formation.robots, _bound(carried, "grip_strength"))
-    names = ("break_at_strain", "break_at_force")
-    rows = [[_bound(part, name) for name in names] for part in formation.parts["spring"]]
+    rows = [[_bound(part, name) for name in BOUNDS] for part in formation.parts["spring"]]
     return np.array(rows, dtype=float).reshape(-1, 2)
 
 

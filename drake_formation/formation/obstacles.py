@@ -13,10 +13,6 @@ from drake_formation.vectors import length_of
 Array = NDArray[np.float64]
 
 
-def _none() -> Array:
-    return np.zeros((0, 4))
-
-
 @dataclass(frozen=True, eq=False)
 class Obstacle:
     """All points within a radius of a point, a segment or a polygon with its inside.
@@ -32,7 +28,7 @@ class Obstacle:
     vertices: Array
     radius: float = 0.0
     known: bool = True
-    motion: Array = field(default_factory=_none)
+    motion: Array = field(default_factory=lambda: np.zeros((0, 4)))
 
     @property
     def layout(self) -> tuple[int, int]:

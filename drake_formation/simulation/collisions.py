@@ -65,7 +65,8 @@ def collisions(series: Series) -> list[Event]:
             found += _beginnings(motion, among_robots, carried_on)
             carried_on = among_robots.gaps(motion.times[-1:], motion.position[-1:])[0] <= 0
             if part:
-                found += _beginnings(motion, _with_obstacles(formation))
+                around = _with_obstacles(formation)
+                found += _beginnings(motion, around, np.zeros(len(around.robots), dtype=bool))
     return sorted(found, key=lambda event: event.time)
 
 
@@ -109,13 +110,13 @@ def _with_obstacles(formation: Formation) -> _Pairs:
     return _Pairs(gaps, robot[:, None], speed, meeting)
 
 
-def _beginnings(motion: Motion, pairs: _Pairs, carried_on: NDArray[np.bool_] | None = None) -> Iterator[Event]:
+def _beginnings(motion: Motion, pairs: _Pairs, carried_on: NDArray[np.bool_]) -> Iterator[Event]:
     """The contacts that begin in a motion; those that are carried on from before it do not."""
     if not len(pairs.robots):
         return
     times, position = motion.times, motion.position
     gap = pairs.gaps(times, position)
-    for pair in np.flatnonzero((gap[0] <= 0) & ~(False if carried_on is None else carried_on)).tolist():
+    for pair in np.flatnonzero((gap[0] <= 0) & ~carried_on).tolist():
         yield pairs.meeting(pair, float(times[0]), position[0])
     bulge = motion.bulge()[:, pairs.robots].sum(axis=-1)
     least = _least(gap, position, pairs, np.diff(times)[:, None], bulge)

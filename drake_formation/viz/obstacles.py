@@ -23,6 +23,8 @@ def draw_obstacles(axes: Axes, result: xr.Dataset, times: list[float]) -> None:
         times: when those that move are drawn (s), fainter and fainter the longer ago; elsewhen their range is not.
     """
     reach = float(result.attrs["sensing_range_m"])
+    if "robot_radius" in result:  # it begins at the footprint
+        reach += float(result["robot_radius"].max()) if reach else 0.0
     for k, obstacle in enumerate(result["obstacle"].values):
         own = result.sel(obstacle=obstacle)
         x, y = own["obstacle_position"].values

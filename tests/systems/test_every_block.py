@@ -34,6 +34,7 @@ from drake_formation.systems.sensing import NearestSensing
 from drake_formation.systems.staged_signals import StagedSignals
 
 SPRINGS = [[10.0, 2.0, 0.5, -1.0], [20.0, 3.0, 1.0, 1.0]]
+SHAPES = [1.0, 1.0, 2.0, 1.0, 2.0, 2.0, 1.2, 1.6, 0.1, -1.0, 0.5, -1.0, -0.5, 0.0, 0.0, 9.0, 0.1, 0.2]
 OBSTACLES = [[0.5, 0.5, 0.0], [-1.0, 0.5, 0.2], [40.0, 0.0, 0.0]]
 
 
@@ -77,6 +78,9 @@ MAKERS = {
     "masked avoidance": lambda: ObstacleAvoidance([2.0, 30.0], OBSTACLES, masked=True),
     "avoidance without obstacles": lambda: ObstacleAvoidance([2.0, 30.0], np.zeros((0, 3))),
     "rotational avoidance": lambda: ObstacleAvoidance([2.0, 0.8, 0.6, 30.0], OBSTACLES, False, rotational_force),
+    "avoidance of shapes": lambda: ObstacleAvoidance(
+        [2.0, 30.0], SHAPES, masked=True, footprints=[0.1], layout=((4, 0), (2, 1)), sighted=True
+    ),
     "barrier": lambda: BarrierFilter([40.0, 0.3, 2.0, 20.0], OBSTACLES),
     "barrier without obstacles": lambda: BarrierFilter([40.0, 0.3, 2.0, 20.0], np.zeros((0, 3))),
     "sensing": lambda: NearestSensing(3, [[1.0, 1.0, 0.0], [-1.0, 0.5, 0.2]]),

@@ -32,8 +32,17 @@ ROBOT_OUTPUTS = (
 ACCELERATION = "acceleration"
 """An output port of such robots as do not move as the forces on them by their mass say."""
 
+HEADING = "heading"
+"""An output port of such robots as have one."""
+
+ROBOT_OPTIONS = (ACCELERATION, HEADING)
+"""Output ports that some kinds of robots have."""
+
 OBJECT_OUTPUTS = ("pose", "strain")
 """Output ports of the carried object, where it is a body of its own, after ``object_``."""
+
+NODES = "nodes"
+"""An output port of such objects as are a grid of nodes, likewise."""
 
 PORT_ORDER = ("phase", "reference", "spring", "load", "channel", "sensed")
 """Input ports of every robot, by the stem of their names, as far as its blocks have them."""
@@ -48,9 +57,9 @@ def build_diagram(scenario: Scenario) -> Diagram:
     ports, for every robot i from 1: ``robot_i_state`` (m, m/s), ``robot_i_tracking_error`` x − x_r (m, m/s),
     ``robot_i_consensus_error`` (m), and in newtons ``robot_i_tracking_force`` u_l, ``robot_i_consensus_force`` u_g,
     ``robot_i_avoidance_force``, ``robot_i_control_force`` (the sum of the three) and ``robot_i_spring_force``; of
-    robots that are no free masses ``robot_i_acceleration`` (m/s²); of an object that is a body of its own
-    ``object_pose`` (x, y, heading and their rates; m, rad) and ``object_strain``; and ``phase`` (0 aggregation, 1
-    transport).
+    robots that are no free masses ``robot_i_acceleration`` (m/s²) and of those that have one ``robot_i_heading`` (rad);
+    of an object that is a body of its own ``object_pose`` (x, y, heading and their rates; m, rad), ``object_strain``
+    and, if it is a grid, ``object_nodes`` (m); and ``phase`` (0 aggregation, 1 transport).
 
     Args:
         scenario: what to build.
@@ -89,8 +98,8 @@ def wired(formation: Formation) -> Diagram:
     if any("sensed" in _input_names(robot) for robot in robots):
         _sense_nearest(builder, robots, parameters)
     for i, robot in enumerate(robots):
-        for output in (*ROBOT_OUTPUTS, ACCELERATION):
-            if output != ACCELERATION or robot.HasOutputPort(output):
+        for output in (*ROBOT_OUTPUTS, *ROBOT_OPTIONS):
+            if output in ROBOT_OUTPUTS or robot.HasOutputPort(output):
                 builder.ExportOutput(robot.GetOutputPort(output), f"{robot_name(i)}_{output}")
     _observe_consensus(builder, robots, parameters)
     builder.ExportOutput(phase.get_output_port(), "phase")
@@ -109,8 +118,8 @@ def robot_diagram(formation: Formation, robot: int) -> Diagram:
 
     Returns:
         The robot, with the input ports that its blocks ask for, of ``phase``, ``reference``, ``spring_j``,
-        ``load``, ``channel_j`` and ``sensed``, and the output ports named in ``ROBOT_OUTPUTS``, and ``ACCELERATION``
-        where its plant has it.
+        ``load``, ``channel_j`` and ``sensed``, and the output ports named in ``ROBOT_OUTPUTS``, and those of
+        ``ROBOT_OPTIONS`` that its plant has.
 
     Raises:
         PartError: a part has not the ports that its role asks for.
@@ -148,8 +157,8 @@ def robot_diagram(formation: Formation, robot: int) -> Diagram:
     builder.ExportOutput(plant.GetOutputPort("spring_force"), "spring_force")
     builder.ExportOutput(controllers[0].GetOutputPort("error"), "tracking_error")
     builder.ExportOutput(control.get_output_port(), "control_force")
-    if plant.HasOutputPort(ACCELERATION):
-        builder.ExportOutput(plant.GetOutputPort(ACCELERATION), ACCELERATION)
+    for name in filter(plant.HasOutputPort, ROBOT_OPTIONS):
+        builder.ExportOutput(plant.GetOutputPort(name), name)
     return builder.Build()
 
 
@@ -219,8 +228,9 @@ def _carry(
         if not robot.HasInputPort("load"):
             raise PartError(f"{plant.called()}: its block has no input port 'load' for what {part.called()} exerts")
         builder.Connect(block.GetOutputPort(name), robot.GetInputPort("load"))
-    for name in OBJECT_OUTPUTS:
-        builder.ExportOutput(block.GetOutputPort(name), f"object_{name}")
+    for name in (*OBJECT_OUTPUTS, NODES):
+        if name in OBJECT_OUTPUTS or block.HasOutputPort(name):
+            builder.ExportOutput(block.GetOutputPort(name), f"object_{name}")
 
 
 def _talk(

@@ -1,18 +1,15 @@
 """``drake-formation run``: a scenario, from its file to its metrics, result, diagram and figures."""
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from drake_formation.cli.app import app
 from drake_formation.cli.options import ENGINES_HELP, EngineName, Overrides, Source, path
+from drake_formation.cli.simulating import progress_bar, simulate_with_progress
 from drake_formation.scenario import Scenario, load_scenario
 from drake_formation.terminal import FAILED_RUN, WRONG_INPUT, say, stop
 
@@ -46,7 +43,7 @@ def run(
     try:
         with reserved(out or Path("out") / resolved.name, RUN) as place:
             try:
-                result = _simulate_with_progress(resolved, engine)
+                result = simulate_with_progress(resolved, engine)
                 figures = metrics(result)
             except SimulationError as error:
                 kept = write_failed_run(place, resolved, error.partial, str(error))
@@ -64,38 +61,15 @@ def run(
     say("\n".join([*remark, *written.remarks(), where]))
 
 
-def _simulate_with_progress(scenario: Scenario, engine: EngineName) -> "xr.Dataset":
-    from drake_formation.simulation import simulate
-
-    with _progress(scenario, scenario.name) as progress:
-        return simulate(scenario, engine=engine.value, progress=progress)
-
-
 def _check_with_progress(scenario: Scenario, result: "xr.Dataset") -> "Check":
     from drake_formation.measuring.check import check
     from drake_formation.simulation import SimulationError
 
     try:
-        with _progress(scenario, f"check of {scenario.name}") as progress:
+        with progress_bar(scenario, f"check of {scenario.name}") as progress:
             return check(scenario, result, progress=progress)
     except SimulationError as error:
         stop(f"The run is complete, but its check is not: {error}", FAILED_RUN)
-
-
-@contextmanager
-def _progress(scenario: Scenario, name: str) -> Iterator[Callable[[float], None]]:
-    """A bar on standard error that goes on with the simulated time."""
-    from drake_formation.simulation import simulated_duration
-
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.completed:.1f} / {task.total:.0f} s simulated"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task(name, total=simulated_duration(scenario))
-        yield lambda time: progress.update(task, completed=time)
 
 
 def _summary(result: "xr.Dataset", figures: "Metrics", check: "Check | None") -> Table:

@@ -5,7 +5,6 @@ from numpy.typing import NDArray
 from pydrake.systems.framework import Context, Diagram
 
 from drake_formation.config.errors import Fault, shown
-from drake_formation.diagram import ACCELERATION
 from drake_formation.lowering import CompiledDiagram, Status, lower
 from drake_formation.scenario import Scenario, ScenarioError, resolve
 from drake_formation.simulation.engine import Start
@@ -177,6 +176,10 @@ class CompiledRecording:
             self._known[port].setflags(write=False)
         return self._known[port]
 
-    def accelerations(self) -> dict[int, Array]:
-        """Acceleration of each robot that has such a port (m/s²), from 0, each of shape (samples, 2)."""
-        return {robot: self.series(ACCELERATION)[:, k] for k, robot in enumerate(self._telling)}
+    def has(self, port: str) -> bool:
+        """Whether there is such a port."""
+        return port in self._ports
+
+    def told(self, port: str) -> dict[int, Array]:
+        """Values of one of ``ROBOT_OPTIONS`` by robot that has it, from 0, each of shape (samples, size)."""
+        return {robot: self.series(port)[:, k] for k, robot in enumerate(self._telling[port])}

@@ -7,17 +7,20 @@ import numpy as np
 from numpy.typing import NDArray
 from pydrake.systems.framework import Context, Diagram, EventStatus
 
-from drake_formation.diagram import ACCELERATION, OBJECT_OUTPUTS
+from drake_formation.diagram import NODES, OBJECT_OUTPUTS, ROBOT_OPTIONS
 from drake_formation.parameters import robot_name
 
 Array = NDArray[np.float64]
 
 RECORDED = ("state", "tracking_error", "tracking_force", "consensus_force", "avoidance_force", "spring_force")
-"""Output ports of every robot that a run records; the rest follows from them, and from ``ACCELERATION`` where it is."""
+"""Output ports of every robot that a run records; the rest follows from them and from ``ROBOT_OPTIONS``."""
 
 
 OBJECT = tuple(f"object_{name}" for name in OBJECT_OUTPUTS)
 """Output ports of an object that is a body of its own, which are recorded as those of one robot are."""
+
+OBJECT_NODES = f"object_{NODES}"
+"""Likewise, of an object that is a grid."""
 
 
 class NonFiniteStateError(ArithmeticError):
@@ -36,24 +39,28 @@ class Recording(Protocol):
         """0 during aggregation, 1 during transport; shape (samples,)."""
 
     def series(self, port: str) -> Array:
-        """Values of one of the ports ``RECORDED``, or of ``OBJECT`` with N = 1, shape (samples, N, size)."""
+        """Values of one of the ports ``RECORDED``, or of an object's with N = 1, shape (samples, N, size)."""
 
-    def accelerations(self) -> dict[int, Array]:
-        """Acceleration of each robot that has such a port (m/s²), from 0, each of shape (samples, 2)."""
+    def has(self, port: str) -> bool:
+        """Whether there is such a port."""
+
+    def told(self, port: str) -> dict[int, Array]:
+        """Values of one of ``ROBOT_OPTIONS`` by robot that has it, from 0, each of shape (samples, size)."""
 
 
-def telling(diagram: Diagram, robots: int) -> dict[int, str]:
-    """The ports ``ACCELERATION`` of a formation diagram, by robot from 0."""
-    ports = {i: f"{robot_name(i)}_{ACCELERATION}" for i in range(robots)}
-    return {i: name for i, name in ports.items() if diagram.HasOutputPort(name)}
+def telling(diagram: Diagram, robots: int) -> dict[str, dict[int, str]]:
+    """Which of ``ROBOT_OPTIONS`` a formation diagram has: output ports by robot from 0."""
+    ports = {option: {i: f"{robot_name(i)}_{option}" for i in range(robots)} for option in ROBOT_OPTIONS}
+    return {
+        option: {i: name for i, name in its.items() if diagram.HasOutputPort(name)} for option, its in ports.items()
+    }
 
 
 def recorded_ports(diagram: Diagram, robots: int) -> dict[str, list[str]]:
     """What is recorded of a formation diagram: its output ports by what they tell, one a robot or one in all."""
     ports = {name: [f"{robot_name(i)}_{name}" for i in range(robots)] for name in RECORDED}
-    if told := telling(diagram, robots):
-        ports[ACCELERATION] = list(told.values())
-    return ports | {name: [name] for name in OBJECT if diagram.HasOutputPort(name)}
+    ports |= {option: list(its.values()) for option, its in telling(diagram, robots).items() if its}
+    return ports | {name: [name] for name in (*OBJECT, OBJECT_NODES) if diagram.HasOutputPort(name)}
 
 
 class Recorder:
@@ -116,9 +123,13 @@ class Recorder:
         ports = self._ports[port]
         return np.reshape(self._samples[port], (len(self._times), len(ports), ports[0].size()))
 
-    def accelerations(self) -> dict[int, Array]:
-        """Acceleration of each robot that has such a port (m/s²), from 0, each of shape (samples, 2)."""
-        return {robot: self.series(ACCELERATION)[:, k] for k, robot in enumerate(self._telling)}
+    def has(self, port: str) -> bool:
+        """Whether there is such a port."""
+        return port in self._ports
+
+    def told(self, port: str) -> dict[int, Array]:
+        """Values of one of ``ROBOT_OPTIONS`` by robot that has it, from 0, each of shape (samples, size)."""
+        return {robot: self.series(port)[:, k] for k, robot in enumerate(self._telling[port])}
 
 
 def _shown(port: Any, context: Context) -> Array:

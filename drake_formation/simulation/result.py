@@ -46,8 +46,12 @@ POSE = ("x", "y", "heading", "x_rate", "y_rate", "heading_rate")
 OBJECT_VARIABLES = {
     "object_pose": (("time", "pose"), "m, m, rad, m/s, m/s, rad/s", "place and heading of the object and their rates"),
     "object_strain": (("time",), "1", "strain of the object"),
+    "object_nodes": (("time", "node", "axis"), "m", "places of the nodes of the object, row by row"),
 }
-"""Those there are where the object is a body of its own."""
+"""Those there may be where the object is a body of its own."""
+
+ROBOT_VARIABLES = {"heading": (("time", "robot"), "rad", "heading of a robot's body, from +x counter-clockwise")}
+"""Those there are where any robot has them."""
 
 
 def labelled_result(series: Series) -> "xr.Dataset":
@@ -58,18 +62,19 @@ def labelled_result(series: Series) -> "xr.Dataset":
 
     Returns:
         A dataset over ``time`` (every step of the integrator), ``robot`` (from 1), ``axis`` (x, y), ``spring``
-        (``1-2``) and ``obstacle`` (from 1); an object that is a body of its own has ``object_pose`` over ``pose``, and
-        ``object_strain``, as its kind says. ``deviation`` is NaN before the hand-off. A sample
-        at the hand-off shows what is so from then on. Between samples the motion is the quintic with position,
-        velocity and acceleration at both ends; :func:`drake_formation.measuring.metrics` measures that. The attribute
-        ``remark`` says what to know about the run, if there is anything.
+        (``1-2``) and ``obstacle`` (from 1); an object that is a body of its own has ``object_pose`` over ``pose``,
+        ``object_strain``, as its kind says, and ``object_nodes`` if it is a grid; ``heading`` is there if any robot has
+        one, and NaN for those that have none. ``deviation`` is NaN before the hand-off. A sample at the hand-off shows
+        what is so from then on. Between samples the motion is the quintic with position, velocity and acceleration at
+        both ends; :func:`drake_formation.measuring.metrics` measures that. The attribute ``remark`` says what to know
+        about the run, if there is anything.
     """
     import xarray as xr  # slow to import, and not needed to build a diagram
 
-    has_body = resolve(series.scenario).has_body
     variables = {
         name: xr.Variable(dimensions, series[name], {"units": units, "long_name": meaning})
-        for name, (dimensions, units, meaning) in (VARIABLES | (OBJECT_VARIABLES if has_body else {})).items()
+        for name, (dimensions, units, meaning) in (VARIABLES | ROBOT_VARIABLES | OBJECT_VARIABLES).items()
+        if name in VARIABLES or name in series
     }
     variables["phase"] = variables["phase"].astype(np.int8)
     scenario = series.scenario
@@ -81,8 +86,10 @@ def labelled_result(series: Series) -> "xr.Dataset":
         "spring": [f"{i + 1}-{j + 1}" for i, j in formation.springs.pairs.tolist()],
         "obstacle": np.arange(1, len(series["obstacle_radius"]) + 1),
     }
-    if has_body:
+    if formation.has_body:
         coordinates["pose"] = list(POSE)
+    if "object_nodes" in series:
+        coordinates["node"] = np.arange(1, series["object_nodes"].shape[1] + 1)
     attributes = {
         "title": scenario.name,
         "scenario": to_yaml(scenario),

@@ -32,9 +32,9 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
         of its dynamics, such as a heading. Input ports: ``force`` (N, size 2), ``phase`` (0 aggregation, 1 transport:
         the springs are engaged), per neighbour j ``spring_j`` (the neighbour's state, size 4), and where the object is
         a body of its own ``load``, what that exerts (N, size 2). Output ports: ``state`` x = [q; v], ``spring_force``
-        −Σ F_ij and the load (N) and, unless it is the sum of the forces by the mass, ``acceleration`` v̇ (m/s²).
-        Parameters: the groups of the dynamics; last, for each neighbour in port order the numbers of the spring law
-        and the desired displacement h_i − h_j (m, two numbers).
+        −Σ F_ij and the load (N), unless it is the sum of the forces by the mass ``acceleration`` v̇ (m/s²), and where
+        the first inner state is one ``heading`` (rad). Parameters: the groups of the dynamics; last, for each neighbour
+        in port order the numbers of the spring law and the desired displacement h_i − h_j (m, two numbers).
         """
 
         def _construct(
@@ -48,6 +48,7 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             *,
             acceleration: bool = True,
             load: bool = False,
+            heading: bool = False,
             converter: Any = None,
         ) -> None:
             """Make the plant.
@@ -61,11 +62,12 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
                 initial_state: default state [q; v; z], shape (4 + inner states,).
                 acceleration: whether to have that output port.
                 load: whether to have that input port.
+                heading: whether to have that output port: the first inner state.
                 converter: for Drake's scalar conversion.
             """
             LeafSystem_[T].__init__(self, converter=converter)
             self.arguments = (dynamics, neighbours, law, numbers, springs, initial_state)
-            self.acceleration, self.load = acceleration, load
+            self.acceleration, self.load, self.heading = acceleration, load, heading
             self.kind = dynamics, law, load  # all else that it computes with is a parameter
             self._dynamics, self._law = dynamics, law.law
             self._groups, self._columns = range(len(numbers)), len(law.arguments()) + 2
@@ -92,9 +94,11 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             if acceleration:
                 all_read = {self.all_input_ports_ticket(), self.all_parameters_ticket()}
                 self.DeclareVectorOutputPort("acceleration", 2, self._calc_acceleration, fresh_state | all_read)
+            if heading:
+                self.DeclareVectorOutputPort("heading", 1, self._calc_heading, fresh_state)
 
         def _construct_copy(self, other: Any, converter: Any = None) -> None:
-            options = {"acceleration": other.acceleration, "load": other.load}
+            options = {"acceleration": other.acceleration, "load": other.load, "heading": other.heading}
             Impl._construct(self, *other.arguments, **options, converter=converter)
 
         def _calc_state(self, context: Any, output: Any) -> None:
@@ -107,6 +111,9 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
         def _calc_acceleration(self, context: Any, output: Any) -> None:
             state = context.get_continuous_state_vector().CopyToVector().tolist()
             output.SetFromVector(np.array(self._rates(context, state)[:2]))
+
+        def _calc_heading(self, context: Any, output: Any) -> None:
+            output.SetFromVector(context.get_continuous_state_vector().CopyToVector()[4:5])
 
         def _spring_force(self, context: Any, x: Scalar, y: Scalar, vx: Scalar, vy: Scalar) -> Pair:
             (phase,) = self._phase.Eval(context).tolist()

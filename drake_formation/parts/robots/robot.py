@@ -26,10 +26,12 @@ class Robot(Part):
 
     Attributes:
         dynamics: see :data:`drake_formation.parts.robots.plant.Dynamics`.
+        has_heading: whether its first inner state is a heading (rad).
     """
 
     Config = RobotNumbers
     dynamics: ClassVar[Dynamics]
+    has_heading: ClassVar[bool] = False
 
     def own_numbers(self) -> Numbers:
         """What its dynamics compute with, by group."""
@@ -47,7 +49,8 @@ class Robot(Part):
         """The plant."""
         *own, springs = numbers
         start, neighbours = self.initial_state(formation, owner), held_robots(formation, owner)
-        return PlanarRobot(self.dynamics, neighbours, formation.law, own, springs, start, load=formation.has_body)
+        ports = {"load": formation.has_body, "heading": self.has_heading}
+        return PlanarRobot(self.dynamics, neighbours, formation.law, own, springs, start, **ports)
 
     def initial_state(self, formation: Formation, owner: int) -> Array:
         """At its starting position, with its starting velocity."""

@@ -1,0 +1,65 @@
+"""The source of the viewing diagram: a block that shows a playback at a Context's time."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from pydrake.common.value import AbstractValue
+from pydrake.geometry import FrameId, FramePoseVector
+from pydrake.math import RigidTransform, RotationMatrix
+from pydrake.systems.framework import Context, LeafSystem
+
+from drake_formation.viz.view.links import Link
+from drake_formation.viz.view.playback import Playback
+
+
+class PoseSource(LeafSystem):  # type: ignore[misc]
+    """Plays a result.
+
+    Output ports: ``poses`` of the frames, for SceneGraph; ``points`` (m), the robots' and the object's nodes, and
+    ``shown``, for every link 1 if it is to be seen, else 0, for :class:`drake_formation.viz.view.links.LinkDrawer`.
+
+    Args:
+        playback: what to play.
+        robots: frame of every robot.
+        body: frame of the object, if that is a rigid body.
+        links: what is drawn between the points. A spring between robots is there once the object is carried; a channel
+            that is down for some time would be hidden by its number in ``shown``.
+    """
+
+    def __init__(
+        self, playback: Playback, robots: Sequence[FrameId], body: FrameId | None, links: Sequence[Link]
+    ) -> None:
+        super().__init__()
+        self._playback, self._robots, self._body = playback, robots, body
+        count = playback.formation.robots
+        self._waits = np.array([link.rest_length is not None and max(link.start, link.end) < count for link in links])
+        points = count + playback.nodes
+        self.DeclareAbstractOutputPort("poses", lambda: AbstractValue.Make(FramePoseVector()), self._calc_poses)
+        self.DeclareVectorOutputPort("points", 2 * points, self._calc_points)
+        self.DeclareVectorOutputPort("shown", len(links), self._calc_shown)
+
+    def _calc_poses(self, context: Context, output: Any) -> None:
+        time = self._now(context)
+        (places,), (headings,) = self._playback.positions(time), self._playback.headings(time)
+        poses = FramePoseVector()
+        for frame, (x, y), heading in zip(self._robots, places, headings, strict=True):
+            poses.set_value(frame, _pose(x, y, heading))
+        if self._body is not None:
+            poses.set_value(self._body, _pose(*self._playback.body(time)[0]))
+        output.set_value(poses)
+
+    def _calc_points(self, context: Context, output: Any) -> None:
+        output.SetFromVector(self._playback.points(self._now(context)).ravel())
+
+    def _calc_shown(self, context: Context, output: Any) -> None:
+        (carried,) = self._playback.carried(self._now(context))
+        output.SetFromVector((carried | ~self._waits).astype(float))
+
+    def _now(self, context: Context) -> Any:
+        """The Context's time, counted from 0, as time in the scenario (s)."""
+        return np.array([self._playback.begin + context.get_time()])
+
+
+def _pose(x: float, y: float, heading: float) -> RigidTransform:
+    return RigidTransform(RotationMatrix.MakeZRotation(heading), [x, y, 0.0])

@@ -1,0 +1,68 @@
+"""Where the robots have been: ribbons on the ground, in pieces that appear as the robots get there."""
+
+from collections.abc import Mapping
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from pydrake.geometry import Meshcat, Rgba
+
+from drake_formation.viz.view.solids import Colour
+
+Array = NDArray[np.float64]
+
+PIECES = 100
+"""Into how many a trail is cut at the most."""
+
+WIDTH = 0.07
+"""Of a ribbon (m)."""
+
+
+class Trails:
+    """The ribbons, drawn at once; which of them are to be seen is recorded by :meth:`record`.
+
+    Args:
+        meshcat: where.
+        root: path of all trails.
+        times: at which the places are known, counted from the begin of the recording (s), shape (m,).
+        places: where the robots are then (m), shape (m, N, 2).
+        colours: of the robots, by number from 1.
+    """
+
+    def __init__(self, meshcat: Meshcat, root: str, times: Array, places: Array, colours: Mapping[int, Colour]) -> None:
+        self._meshcat, self._root = meshcat, root
+        cuts = np.unique(np.linspace(0, len(times) - 1, PIECES + 1).astype(int))
+        self._ends = times[cuts[1:]].tolist()
+        for piece, (first, last) in enumerate(pairwise(cuts)):
+            for i, (robot, colour) in enumerate(colours.items()):
+                vertices, faces = ribbon(places[first : last + 1, i])
+                path = f"{self._path(piece)}/robot_{robot}"
+                meshcat.SetTriangleMesh(path, vertices, faces, Rgba(*colour[:3], 1.0))
+
+    def record(self) -> None:
+        """Hide every piece at first, and show it from when its end is reached."""
+        for piece, end in enumerate(self._ends):
+            self._meshcat.SetProperty(self._path(piece), "visible", False, 0.0)
+            self._meshcat.SetProperty(self._path(piece), "visible", True, end)
+
+    def _path(self, piece: int) -> str:
+        return f"{self._root}/{piece}"
+
+
+def ribbon(places: Array) -> tuple[Array, NDArray[np.int32]]:
+    """A ribbon just above the ground along a way.
+
+    Args:
+        places: (m), shape (m, 2).
+
+    Returns:
+        Vertices (m), shape (3, 2 m), on the left and the right of each place by turns; and triangles between them, of
+        shape (3, 2 (m − 1)).
+    """
+    along = np.gradient(places, axis=0)
+    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-12)
+    aside = 0.5 * WIDTH * np.stack([-along[:, 1], along[:, 0]], axis=-1)
+    sides = np.stack([places + aside, places - aside], axis=1).reshape(-1, 2)
+    first = 2 * np.arange(len(places) - 1)
+    faces = np.concatenate([[first, first + 1, first + 2], [first + 1, first + 3, first + 2]], axis=1)
+    return np.column_stack([sides, np.full(len(sides), 0.02)]).T, faces.astype(np.int32)

@@ -8,6 +8,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from drake_formation.cli.app import app
+from drake_formation.cli.film import filming
 from drake_formation.cli.options import ENGINES_HELP, EngineName, Overrides, Source, path
 from drake_formation.cli.simulating import progress_bar, simulate_with_progress
 from drake_formation.scenario import Scenario, load_scenario
@@ -30,6 +31,10 @@ def run(
     engine: Annotated[
         EngineName, typer.Option(help=f"{ENGINES_HELP}; auto: blocks or compiled, whichever is done first.")
     ] = EngineName.AUTO,
+    film: Annotated[
+        Path | None,
+        typer.Option("--animate", parser=path, metavar="FILE", help="Write a film too; ends in .mp4 or .gif."),
+    ] = None,
     check: Annotated[bool, typer.Option("--check", help="Run it again, more accurately, and compare.")] = False,
 ) -> None:
     """Run a scenario and write its metrics, result, diagram and figures."""
@@ -38,10 +43,11 @@ def run(
     from drake_formation.measuring import metrics
     from drake_formation.places import PICTURES, OutputError, reserved
     from drake_formation.simulation import SimulationError
+    from drake_formation.viz.errors import FilmError
 
     resolved = load_scenario(scenario, overrides=overrides)
     try:
-        with reserved(out or Path("out") / resolved.name, RUN) as place:
+        with filming(film) as shoot, reserved(out or Path("out") / resolved.name, RUN) as place:
             try:
                 result = simulate_with_progress(resolved, engine)
                 figures = metrics(result)
@@ -50,15 +56,16 @@ def run(
                 recorded = f"What was recorded until then is in {kept.folder}."
                 stop("\n".join([str(error), *kept.remarks(), recorded]), FAILED_RUN)
             written = write_run(place, resolved, result, figures)
+            shoot(result)
         checked = _check_with_progress(resolved, result) if check else None
         if checked:
             write_check(written.folder, checked)
-    except (OutputError, LoweringError) as error:
+    except (OutputError, LoweringError, FilmError) as error:
         stop(str(error), WRONG_INPUT)
     say(_summary(result, figures, checked))
     remark = [str(result.attrs["remark"])] if "remark" in result.attrs else []
     where = f"Results in {written.folder}, pictures in {written.folder / PICTURES}."
-    say("\n".join([*remark, *written.remarks(), where]))
+    say("\n".join([*remark, *written.remarks(), where, *([f"Film in {film}."] if film else [])]))
 
 
 def _check_with_progress(scenario: Scenario, result: "xr.Dataset") -> "Check":

@@ -3,10 +3,9 @@
 What is seen is a diagram of its own: a source plays the result's poses into Drake's SceneGraph, which a
 MeshcatVisualizer draws. The formation's own diagram has no part in it, so that it converts and compiles as ever.
 
-- ``playback``: a result between its samples.
-- ``poses``: the source, a block that shows a playback at a Context's time.
+- ``poses``: the source, a block that shows a result at a Context's time.
 - ``solids``, ``robots``, ``carried``: what is rigid, by kind of robot and object.
-- ``links``: what is stretched: springs, coloured by their strain, and channels.
+- ``link_drawer``: what is stretched: springs, coloured by their strain, and channels.
 - ``stage``: what stands still: ground, obstacles with their range, goal, and where the camera is.
 - ``trails``: where the robots have been.
 - ``frames``: at which times a recording needs its pictures.

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from drake_formation.viz.view.links import Link, lengths
-from drake_formation.viz.view.playback import Playback
+from drake_formation.viz.links import Link, lengths
+from drake_formation.viz.playback import Playback
 
 Array = NDArray[np.float64]
 

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 
 from pydrake.geometry import Meshcat, MeshcatParams
 
-from drake_formation.viz.view.links import CHANNEL, PRESSED, STRETCHED
-from drake_formation.viz.view.playback import Playback
-from drake_formation.viz.view.recording import largest_strain, moving_links, record
+from drake_formation.viz.links import PRESSED, STRETCHED, largest_strain, moving_links
+from drake_formation.viz.playback import Playback
+from drake_formation.viz.view.link_drawer import CHANNEL
+from drake_formation.viz.view.recording import record
 
 if TYPE_CHECKING:
     import xarray as xr

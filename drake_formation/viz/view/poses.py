@@ -9,15 +9,16 @@ from pydrake.geometry import FrameId, FramePoseVector
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.systems.framework import Context, LeafSystem
 
-from drake_formation.viz.view.links import Link
-from drake_formation.viz.view.playback import Playback
+from drake_formation.viz.links import Link
+from drake_formation.viz.playback import Playback
 
 
 class PoseSource(LeafSystem):  # type: ignore[misc]
     """Plays a result.
 
-    Output ports: ``poses`` of the frames, for SceneGraph; ``points`` (m), the robots' and the object's nodes, and
-    ``shown``, for every link 1 if it is to be seen, else 0, for :class:`drake_formation.viz.view.links.LinkDrawer`.
+    Output ports: ``poses`` of the frames, for SceneGraph; ``points``, the robots' and the object's nodes (m), and
+    ``shown``, for every link 1 if it is to be seen, else 0, as
+    :class:`drake_formation.viz.view.link_drawer.LinkDrawer` takes them.
 
     Args:
         playback: what to play.

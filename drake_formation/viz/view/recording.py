@@ -20,10 +20,11 @@ from pydrake.math import RigidTransform
 from pydrake.systems.framework import Diagram, DiagramBuilder
 
 from drake_formation.viz.figures import robot_colours
-from drake_formation.viz.view.carried import grid_links, object_solids, spring_links
+from drake_formation.viz.links import Link, largest_strain, moving_links
+from drake_formation.viz.playback import Playback
+from drake_formation.viz.view.carried import object_solids
 from drake_formation.viz.view.frames import RATE, key_times
-from drake_formation.viz.view.links import Link, LinkDrawer, channel_links, strains
-from drake_formation.viz.view.playback import Playback
+from drake_formation.viz.view.link_drawer import LinkDrawer
 from drake_formation.viz.view.poses import PoseSource
 from drake_formation.viz.view.robots import solids_of
 from drake_formation.viz.view.solids import Colour, Solid
@@ -39,9 +40,6 @@ ROOT = "/formation"
 
 FEWEST, MOST, DRAWN = 200, 1200, 25_000
 """Pictures that a recording may have: so many that pictures by things that move are ``DRAWN``, between the others."""
-
-LEAST_STRAIN = 0.01
-"""The strain in full colour is no less (1), lest rounding look like a deformation."""
 
 
 def record(result: "xr.Dataset", meshcat: Meshcat, *, follow: bool = False) -> Playback:
@@ -91,18 +89,6 @@ def _surroundings(playback: Playback) -> tuple[Array, Array]:
     """Corners of what is seen about the formation, where that is in the middle (m)."""
     reach = 1.5 * playback.formation.radius + 1.0
     return np.array([-reach, -reach]), np.array([reach, reach])
-
-
-def moving_links(playback: Playback) -> list[Link]:
-    """What is drawn between points that move: channels, and the springs of the object."""
-    grid = grid_links(playback.formation) if playback.nodes else []
-    return [*channel_links(playback.formation), *spring_links(playback.formation), *grid]
-
-
-def largest_strain(playback: Playback, links: list[Link]) -> float:
-    """The largest strain of a link while the object is carried (1), or the least that is told from rounding."""
-    times = np.linspace(max(playback.begin, min(playback.formation.hand_off, playback.end)), playback.end, 2000)
-    return max(LEAST_STRAIN, float(np.abs(strains(links, playback.points(times))).max(initial=0.0)))
 
 
 def viewing_diagram(playback: Playback, meshcat: Meshcat, links: list[Link], colours: dict[int, Colour]) -> Diagram:

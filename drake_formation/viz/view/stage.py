@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from pydrake.geometry import Cylinder, Meshcat, Rgba
 from pydrake.math import RigidTransform
 
-from drake_formation.viz.view.playback import Playback
+from drake_formation.viz.playback import Playback
 from drake_formation.viz.view.solids import DARK, Solid
 
 Array = NDArray[np.float64]

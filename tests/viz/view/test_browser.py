@@ -9,10 +9,10 @@ from browsing import View, chromium, page_address
 
 from drake_formation import load_scenario, simulate
 from drake_formation.viz.figures import robot_colours
+from drake_formation.viz.playback import Playback
 from drake_formation.viz.view import write_page
 from drake_formation.viz.view.frames import TOLERANCE
 from drake_formation.viz.view.knobs import KNOBS
-from drake_formation.viz.view.playback import Playback
 from drake_formation.viz.view.session import AGAIN, CLOSE
 
 pytestmark = pytest.mark.slow

@@ -5,9 +5,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drake_formation import load_scenario, simulate
+from drake_formation.viz.links import moving_links
+from drake_formation.viz.playback import Playback
 from drake_formation.viz.view.frames import RATE, TOLERANCE, corners, key_times
-from drake_formation.viz.view.playback import Playback
-from drake_formation.viz.view.recording import moving_links
 
 
 @given(

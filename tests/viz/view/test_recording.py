@@ -8,11 +8,11 @@ from carrying import carried
 from pydrake.geometry import QueryObject, Rgba
 
 from drake_formation import simulate
+from drake_formation.viz.links import AT_REST, PRESSED, STRETCHED, moving_links, strain_colour, strains
+from drake_formation.viz.playback import Playback
 from drake_formation.viz.view import page
-from drake_formation.viz.view.links import AT_REST, PRESSED, STRETCHED, strain_colour, strains
 from drake_formation.viz.view.page import quiet_meshcat
-from drake_formation.viz.view.playback import Playback
-from drake_formation.viz.view.recording import ROOT, moving_links, record, viewing_diagram
+from drake_formation.viz.view.recording import ROOT, record, viewing_diagram
 from drake_formation.viz.view.trails import ribbon
 
 KINDS = "{kind: {1: unicycle, 2: omnidirectional, default: point_mass}, start: {centre: [2, 3]}, heading: 30}"
@@ -63,7 +63,7 @@ def test_a_page_needs_nothing_else(result, follow):
 
 
 def test_the_colour_of_a_spring_tells_its_strain():
-    assert strain_colour(0.0) == AT_REST.tolist()
+    assert strain_colour(0.0) == tuple(AT_REST)
     np.testing.assert_allclose(strain_colour(1.0), STRETCHED)
     np.testing.assert_allclose(strain_colour(-2.0), PRESSED)
 

@@ -5,7 +5,7 @@ import pytest
 from carrying import carried
 
 from drake_formation import load_scenario, simulate
-from drake_formation.viz.view.playback import Playback
+from drake_formation.viz.playback import Playback
 
 MIXED = "{kind: {1: unicycle, 2: omnidirectional, default: point_mass}, start: {centre: [2, 3]}, heading: 30}"
 

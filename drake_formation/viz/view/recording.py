@@ -38,7 +38,7 @@ Array = NDArray[np.float64]
 
 ROOT = "/formation"
 
-FEWEST, MOST, DRAWN = 200, 1200, 25_000
+FEWEST, MOST, DRAWN = 300, 1200, 25_000
 """Pictures that a recording may have: so many that pictures by things that move are ``DRAWN``, between the others."""
 
 
@@ -71,7 +71,7 @@ def record(result: "xr.Dataset", meshcat: Meshcat, *, follow: bool = False) -> P
     low, high = bounds(playback, places)
     set_stage(meshcat, f"{ROOT}/ground", low, high)
     look_at(meshcat, *(_surroundings(playback) if follow else (low, high)))
-    trails = Trails(meshcat, f"{ROOT}/trails", times, places, colours)
+    trails = Trails(meshcat, f"{ROOT}/trails", playback, colours)
     diagram = viewing_diagram(playback, meshcat, links, colours)
     context = diagram.CreateDefaultContext()
     meshcat.StartRecording(RATE, set_visualizations_while_recording=False)

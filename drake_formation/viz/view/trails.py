@@ -1,18 +1,18 @@
 """Where the robots have been: ribbons on the ground, in pieces that appear as the robots get there."""
 
 from collections.abc import Mapping
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 from pydrake.geometry import Meshcat, Rgba
 
+from drake_formation.viz.playback import Playback
 from drake_formation.viz.view.solids import Colour
 
 Array = NDArray[np.float64]
 
-PIECES = 100
-"""Into how many a trail is cut at the most."""
+PIECES, STEPS = 100, 12
+"""Into how many pieces of equal duration a trail is cut, and each of them into how many straight ones."""
 
 WIDTH = 0.07
 """Of a ribbon (m)."""
@@ -24,20 +24,20 @@ class Trails:
     Args:
         meshcat: where.
         root: path of all trails.
-        times: at which the places are known, counted from the begin of the recording (s), shape (m,).
-        places: where the robots are then (m), shape (m, N, 2).
+        playback: tells where the robots are.
         colours: of the robots, by number from 1.
     """
 
-    def __init__(self, meshcat: Meshcat, root: str, times: Array, places: Array, colours: Mapping[int, Colour]) -> None:
+    def __init__(self, meshcat: Meshcat, root: str, playback: Playback, colours: Mapping[int, Colour]) -> None:
         self._meshcat, self._root = meshcat, root
-        cuts = np.unique(np.linspace(0, len(times) - 1, PIECES + 1).astype(int))
-        self._ends = times[cuts[1:]].tolist()
-        for piece, (first, last) in enumerate(pairwise(cuts)):
+        times = np.linspace(playback.begin, playback.end, PIECES * STEPS + 1)
+        places = playback.positions(times)
+        self._ends = (times[STEPS::STEPS] - playback.begin).tolist()
+        for piece in range(PIECES):
+            way = places[piece * STEPS : (piece + 1) * STEPS + 1]
             for i, (robot, colour) in enumerate(colours.items()):
-                vertices, faces = ribbon(places[first : last + 1, i])
                 path = f"{self._path(piece)}/robot_{robot}"
-                meshcat.SetTriangleMesh(path, vertices, faces, Rgba(*colour[:3], 1.0))
+                meshcat.SetTriangleMesh(path, *ribbon(way[:, i]), Rgba(*colour))
 
     def record(self) -> None:
         """Hide every piece at first, and show it from when its end is reached."""

@@ -48,6 +48,7 @@ diagrams: $(VENV)/installed-dev
 	for name in line quadrilateral octagon s_curve; do \
 		$(BIN)/drake-formation graphviz $$name -o diagrams/$$name.svg || exit; \
 	done
+	$(BIN)/drake-formation graphviz octagon --view formation -o diagrams/octagon-formation.svg
 	$(BIN)/drake-formation run line --out out/line
 	cp out/line/figures/paths.png diagrams/line-paths.png
 	$(BIN)/drake-formation reproduce --only fig11 --out out/paper

@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+LOST = 20.0
+"""Robots are shown as far off as this many times the size of the task; those of a run that diverged go beyond."""
+
 
 class Playback:
     """A result as functions of time.
@@ -26,7 +29,9 @@ class Playback:
         title: of the result.
         formation: what its scenario means.
         sensing_range: at which robots sense obstacles (m).
-        begin, end: times of its first and last sample (s).
+        begin: time of its first sample (s).
+        end: time of the last one that is shown (s).
+        lost: whether it goes on, but its robots were beyond all bounds then.
 
     Raises:
         ValueError: it is no result of this version, or has no sample.
@@ -34,14 +39,17 @@ class Playback:
     """
 
     def __init__(self, result: "xr.Dataset") -> None:
-        self._series = series_of(result)
-        self._times = self._series["time"]
-        if not len(self._times):
+        whole = series_of(result)
+        if not len(whole["time"]):
             raise ValueError("the result has no sample: there is nothing to show")
+        self.formation: Formation = resolve(whole.scenario)
+        shown = _before_lost(self.formation, whole["position"])
+        self._series = series_of(result.isel(time=slice(shown)))
+        self._times = self._series["time"]
         self.title = str(result.attrs["title"])
         self.sensing_range = float(result.attrs["sensing_range_m"])
-        self.formation: Formation = resolve(self._series.scenario)
         self.begin, self.end = float(self._times[0]), float(self._times[-1])
+        self.lost = shown < len(whole["time"])
         motion = (self._series[name] for name in ("position", "velocity", "acceleration"))
         self._motion = Motion(self._times, *motion)
 
@@ -80,3 +88,11 @@ class Playback:
     def _between(self, times: Array, values: Array) -> Array:
         """Values at the samples, of shape (samples, columns), along straight lines between them."""
         return np.stack([np.interp(times, self._times, column) for column in values.T], axis=-1)
+
+
+def _before_lost(formation: Formation, positions: Array) -> int:
+    """How many samples there are before a robot is lost; at least the first."""
+    task = np.concatenate([formation.starts, formation.goal + formation.slots, formation.obstacles[:, :2]])
+    middle, size = task.mean(axis=0), max(float(np.ptp(task, axis=0).max()), formation.radius, 1.0)
+    off = np.abs(positions - middle).max(axis=(1, 2)) > LOST * size
+    return max(int(off.argmax()), 1) if off.any() else len(positions)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from carrying import carried
 
-from drake_formation import load_scenario, simulate
+from drake_formation import SimulationError, load_scenario, simulate
 from drake_formation.viz.playback import Playback
 
 MIXED = "{kind: {1: unicycle, 2: omnidirectional, default: point_mass}, start: {centre: [2, 3]}, heading: 30}"
@@ -42,6 +42,16 @@ def test_compiled_runs_tell_the_same():
     for name in ("points", "headings"):
         one, other = (getattr(Playback(result), name)(times) for result in (blocks, compiled))
         np.testing.assert_allclose(one, other, atol=1e-4)
+
+
+def test_a_run_that_diverged_is_shown_until_its_robots_are_lost():
+    unstable = {"simulator.integration_scheme": "explicit_euler", "simulator.use_error_control": False}
+    with pytest.raises(SimulationError) as failure:
+        simulate(load_scenario("line", overrides=unstable | {"consensus.delta": 1e4}))
+    playback = Playback(failure.value.partial)
+    assert playback.lost
+    assert playback.begin < playback.end < failure.value.time
+    assert np.abs(playback.positions(np.linspace(playback.begin, playback.end, 50))).max() < 1e3
 
 
 def test_what_is_no_result_is_refused():

@@ -36,7 +36,9 @@ def key_times(playback: Playback, links: Sequence[Link], most: int) -> Array:
         links: what is stretched, each by its length.
         most: how many pictures there may be, if those of every second leave room for any.
     """
-    count = max(int(np.ceil((playback.end - playback.begin) * RATE)), 1)
+    count = int(np.ceil((playback.end - playback.begin) * RATE))
+    if not count:
+        return np.zeros(1)
     times = np.minimum(np.arange(count + 1) / RATE, playback.end - playback.begin)
     moments = playback.begin + times
     points = playback.points(moments)

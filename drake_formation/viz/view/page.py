@@ -81,6 +81,8 @@ def _caption(playback: Playback) -> str:
         told.append(f"springs {shorter} or {longer} than at rest, full colour at {most}")
     if any(link.rest_length is None for link in links):
         told.append(f"{_word('channels', CHANNEL[:3])} come to a point at the robot that hears")
+    if playback.lost:
+        told.append(f"shown until {playback.end:.4g} s, when robots were beyond all bounds")
     return " · ".join(told)
 
 

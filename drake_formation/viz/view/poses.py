@@ -34,7 +34,8 @@ class PoseSource(LeafSystem):  # type: ignore[misc]
         super().__init__()
         self._playback, self._robots, self._body = playback, robots, body
         count = playback.formation.robots
-        self._waits = np.array([link.rest_length is not None and max(link.start, link.end) < count for link in links])
+        waits = [link.rest_length is not None and max(link.start, link.end) < count for link in links]
+        self._waits = np.array(waits, dtype=bool)
         points = count + playback.nodes
         self.DeclareAbstractOutputPort("poses", lambda: AbstractValue.Make(FramePoseVector()), self._calc_poses)
         self.DeclareVectorOutputPort("points", 2 * points, self._calc_points)

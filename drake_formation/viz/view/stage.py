@@ -15,6 +15,9 @@ Array = NDArray[np.float64]
 MARGIN = 1.0
 """How far the ground reaches beyond what moves (m)."""
 
+MOST_LINES = 60
+"""Lines on the ground along each axis; with more, they are further apart."""
+
 POINT = 0.06
 """Radius at which an obstacle without one is drawn (m)."""
 
@@ -54,7 +57,7 @@ def bounds(playback: Playback, places: Array) -> tuple[Array, Array]:
 
 
 def set_stage(meshcat: Meshcat, root: str, low: Array, high: Array) -> None:
-    """Draw the ground, metre by metre, under a light sky.
+    """Draw the ground, metre by metre or by ten where that is too fine, under a light sky.
 
     Args:
         meshcat: where.
@@ -69,7 +72,8 @@ def set_stage(meshcat: Meshcat, root: str, low: Array, high: Array) -> None:
     for light, intensity in LIGHTS.items():
         meshcat.SetProperty(f"/Lights/{light}/<object>", "intensity", intensity)
     meshcat.SetProperty("/Lights/FillLight/<object>", "position", SUN)
-    for step, grey in ((1.0, 0.86), (5.0, 0.66)):
+    unit = 10.0 ** max(0.0, np.ceil(np.log10((high - low).max() / MOST_LINES)))
+    for step, grey in ((unit, 0.86), (5 * unit, 0.66)):
         starts, ends = _lines(low, high, step)
         meshcat.SetLineSegments(f"{root}/every {step:g} m", starts, ends, 1.0, Rgba(grey, grey, grey, 1.0))
 

@@ -7,7 +7,7 @@ import pytest
 from carrying import carried
 from pydrake.geometry import QueryObject, Rgba
 
-from drake_formation import simulate
+from drake_formation import load_scenario, simulate
 from drake_formation.viz.links import AT_REST, PRESSED, STRETCHED, moving_links, strain_colour, strains
 from drake_formation.viz.playback import Playback
 from drake_formation.viz.view import page
@@ -60,6 +60,14 @@ def test_a_page_needs_nothing_else(result, follow):
     assert not re.findall(r"<script[^>]*\bsrc", text)
     assert "<title>carried</title>" in text
     assert len(text) < 5e6
+
+
+@pytest.mark.parametrize("overrides", [{"robots": 1}, {"end": 1}])
+def test_next_to_nothing_is_a_page_too(overrides):
+    alone = {"formation": {"shape": "line", "robots": overrides.get("robots", 2), "side": 1.0}}
+    quick = {"robots.start": {"centre": [2.5, 3.5]}, "aggregation.duration": 0.5, "transport.duration": 0.5}
+    result = simulate(load_scenario("line", overrides=alone | quick))
+    assert "viewer" in page(result.isel(time=slice(overrides.get("end"))))
 
 
 def test_the_colour_of_a_spring_tells_its_strain():

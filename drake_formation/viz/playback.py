@@ -1,5 +1,6 @@
 """A result between its samples: where everything is at any time."""
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +15,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Array = NDArray[np.float64]
+
+LATTICE = "lattice"
+"""The kind of object that is a grid of nodes."""
 
 LOST = 20.0
 """Robots are shown as far off as this many times the size of the task; those of a run that diverged go beyond."""
@@ -43,6 +47,8 @@ class Playback:
         if not len(whole["time"]):
             raise ValueError("the result has no sample: there is nothing to show")
         self.formation: Formation = resolve(whole.scenario)
+        if missing := [name for name in _expected(self.formation) if name not in whole]:
+            raise ValueError(f"not a result of this version: it has no {', '.join(missing)}")
         shown = _before_lost(self.formation, whole["position"])
         self._series = series_of(result.isel(time=slice(shown)))
         self._times = self._series["time"]
@@ -88,6 +94,14 @@ class Playback:
     def _between(self, times: Array, values: Array) -> Array:
         """Values at the samples, of shape (samples, columns), along straight lines between them."""
         return np.stack([np.interp(times, self._times, column) for column in values.T], axis=-1)
+
+
+def _expected(formation: Formation) -> Iterator[str]:
+    """What a result has beside what all have, by the kinds of robots and object."""
+    if any(getattr(part, "has_heading", False) for part in formation.parts["robot"]):
+        yield "heading"
+    if formation.parts["object"][0].kind == LATTICE:
+        yield "object_nodes"
 
 
 def _before_lost(formation: Formation, positions: Array) -> int:

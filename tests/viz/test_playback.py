@@ -54,6 +54,12 @@ def test_a_run_that_diverged_is_shown_until_its_robots_are_lost():
     assert np.abs(playback.positions(np.linspace(playback.begin, playback.end, 50))).max() < 1e3
 
 
+@pytest.mark.parametrize("name", ["heading", "object_nodes"])
+def test_a_result_of_before_it_told_what_is_to_be_seen_is_refused(result, name):
+    with pytest.raises(ValueError, match=f"no {name}"):
+        Playback(result.drop_vars(name))
+
+
 def test_what_is_no_result_is_refused():
     result = simulate(load_scenario("line", overrides={"aggregation.duration": 0.0, "transport.duration": 0.2}))
     with pytest.raises(ValueError, match="position"):

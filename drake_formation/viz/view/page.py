@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 DRAKES_TITLE = "<title>Drake MeshCat</title>"
 
 CAPTION = """<style>
-#caption {{ position: fixed; left: 1em; bottom: 1em; font: 14px sans-serif; color: #333; max-width: 60em }}
+#caption {{ position: fixed; left: 1em; bottom: 1em; font: 14px sans-serif; color: #333; max-width: 60em;
+  padding: .3em .6em; background: rgba(247, 247, 250, .85) }}
 #caption b {{ padding: 0 .3em; border-radius: .2em; color: white; font-weight: normal }}
 </style>
 <div id="caption">{text}</div>

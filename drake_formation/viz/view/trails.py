@@ -14,6 +14,9 @@ Array = NDArray[np.float64]
 PIECES, STEPS = 100, 12
 """Into how many pieces of equal duration a trail is cut, and each of them into how many straight ones."""
 
+LOWEST, STEP_UP = 0.015, 0.0015
+"""Height of the first ribbon, and of each over the one before, so that of ribbons that cross one is on top (m)."""
+
 WIDTH = 0.07
 """Of a ribbon (m)."""
 
@@ -37,7 +40,7 @@ class Trails:
             way = places[piece * STEPS : (piece + 1) * STEPS + 1]
             for i, (robot, colour) in enumerate(colours.items()):
                 path = f"{self._path(piece)}/robot_{robot}"
-                meshcat.SetTriangleMesh(path, *ribbon(way[:, i]), Rgba(*colour))
+                meshcat.SetTriangleMesh(path, *ribbon(way[:, i], LOWEST + i * STEP_UP), Rgba(*colour))
 
     def record(self) -> None:
         """Hide every piece at first, and show it from when its end is reached."""
@@ -49,11 +52,12 @@ class Trails:
         return f"{self._root}/{piece}"
 
 
-def ribbon(places: Array) -> tuple[Array, NDArray[np.int32]]:
-    """A ribbon just above the ground along a way.
+def ribbon(places: Array, height: float) -> tuple[Array, NDArray[np.int32]]:
+    """A ribbon along a way.
 
     Args:
         places: (m), shape (m, 2).
+        height: above the ground (m).
 
     Returns:
         Vertices (m), shape (3, 2 m), on the left and the right of each place by turns; and triangles between them, of
@@ -65,4 +69,4 @@ def ribbon(places: Array) -> tuple[Array, NDArray[np.int32]]:
     sides = np.stack([places + aside, places - aside], axis=1).reshape(-1, 2)
     first = 2 * np.arange(len(places) - 1)
     faces = np.concatenate([[first, first + 1, first + 2], [first + 1, first + 3, first + 2]], axis=1)
-    return np.column_stack([sides, np.full(len(sides), 0.02)]).T, faces.astype(np.int32)
+    return np.column_stack([sides, np.full(len(sides), height)]).T, faces.astype(np.int32)

@@ -87,7 +87,8 @@ def test_strains_are_of_the_results_springs():
 
 def test_a_ribbon_runs_on_both_sides_of_its_way():
     places = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 2.0]])
-    vertices, faces = ribbon(places)
+    vertices, faces = ribbon(places, 0.1)
     np.testing.assert_allclose(0.5 * (vertices[:2, 0::2] + vertices[:2, 1::2]), places.T)
+    assert set(vertices[2]) == {0.1}
     assert faces.shape == (3, 4)
     assert faces.max() == 5

@@ -44,7 +44,7 @@ lint: $(VENV)/installed-dev
 types: $(VENV)/installed-dev
 	$(BIN)/mypy
 
-diagrams: $(VENV)/installed
+diagrams: $(VENV)/installed-dev
 	for name in line quadrilateral octagon s_curve; do \
 		$(BIN)/drake-formation graphviz $$name -o diagrams/$$name.svg || exit; \
 	done
@@ -52,6 +52,7 @@ diagrams: $(VENV)/installed
 		$(BIN)/drake-formation run $$name --out out/$$name || exit; \
 		cp out/$$name/figures/overview.png diagrams/$$name.png; \
 	done
+	$(BIN)/drake-formation graphviz octagon --view formation -o diagrams/octagon-formation.svg
 	$(BIN)/drake-formation run line --out out/line
 	cp out/line/figures/paths.png diagrams/line-paths.png
 	$(BIN)/drake-formation run robot-failure --out out/robot-failure
@@ -66,6 +67,7 @@ diagrams: $(VENV)/installed
 	cp out/avoidance/figures/paths.png diagrams/avoidance-paths.png
 	$(BIN)/drake-formation analyze line --set consensus.delta=1e4 --out out/certificate
 	cp out/certificate/figures/delay_margin.png diagrams/line-delay-margin.png
+	$(BIN)/python tests/view_picture.py diagrams/view.png
 
 reproduce: $(VENV)/installed
 	$(BIN)/drake-formation reproduce --out out/paper

@@ -37,11 +37,20 @@ ROBOT_OUTPUTS = (
 ACCELERATION = "acceleration"
 """An output port of such robots as do not move as the forces on them by their mass say."""
 
+HEADING = "heading"
+"""An output port of such robots as have one."""
+
+ROBOT_OPTIONS = (ACCELERATION, HEADING)
+"""Output ports that some kinds of robots have."""
+
 DEMANDED, MEASURED = "demanded_force", "measured"
 """Output ports of such robots as have a computer or actuators, and sensors, that are no wires."""
 
 OBJECT_OUTPUTS = ("pose", "strain")
 """Output ports of the carried object, where it is a body of its own, after ``object_``."""
+
+NODES = "nodes"
+"""An output port of such objects as are a grid of nodes, likewise."""
 
 PORT_ORDER = ("phase", "reference", "spring", "load", "intact", "held", "failure", "channel", "sensed", "visible")
 """Input ports of every robot, by the stem of their names, as far as its blocks have them."""
@@ -59,9 +68,10 @@ def build_diagram(scenario: Scenario) -> Diagram:
     where they are ideal) and ``robot_i_spring_force``; of robots whose computer or actuators are no wires
     ``robot_i_demanded_force`` (what is asked of the actuators: the sum of the three, or what a computer holds of it);
     of robots whose sensors are no wires ``robot_i_measured`` (what they take for their state and send; ``state`` and
-    ``tracking_error`` are the true ones); of robots that are no free masses ``robot_i_acceleration`` (m/s²); of an
-    object that is a body of its own ``object_pose`` (x, y, heading and their rates; m, rad) and ``object_strain``; and
-    ``phase`` (0 aggregation, 1 transport).
+    ``tracking_error`` are the true ones); of robots that are no free masses ``robot_i_acceleration`` (m/s²) and of
+    those that have one ``robot_i_heading`` (rad); of an object that is a body of its own ``object_pose`` (x, y, heading
+    and their rates; m, rad), ``object_strain`` and, if it is a grid, ``object_nodes`` (m); and ``phase`` (0
+    aggregation, 1 transport).
 
     Args:
         scenario: what to build.
@@ -105,7 +115,7 @@ def wired(formation: Formation) -> Diagram:
         block = LineOfSight(obstacles, footprints, formation.obstacles.layout)
         _sense(builder, robots, block, "line_of_sight", "visible")
     for i, robot in enumerate(robots):
-        for output in (*ROBOT_OUTPUTS, ACCELERATION, DEMANDED, MEASURED):
+        for output in (*ROBOT_OUTPUTS, *ROBOT_OPTIONS, DEMANDED, MEASURED):
             if output in ROBOT_OUTPUTS or robot.HasOutputPort(output):
                 builder.ExportOutput(robot.GetOutputPort(output), f"{robot_name(i)}_{output}")
     _observe_consensus(builder, robots, parameters)
@@ -125,8 +135,8 @@ def robot_diagram(formation: Formation, robot: int) -> Diagram:
 
     Returns:
         The robot, with the input ports that its blocks ask for, of ``phase``, ``reference``, ``spring_j``,
-        ``load``, ``channel_j``, ``sensed`` and ``visible``, and the output ports named in ``ROBOT_OUTPUTS``;
-        ``ACCELERATION`` where its plant has it, ``DEMANDED`` and ``MEASURED`` where its parts are no wires.
+        ``load``, ``channel_j``, ``sensed`` and ``visible``, and the output ports named in ``ROBOT_OUTPUTS``; those of
+        ``ROBOT_OPTIONS`` that its plant has, ``DEMANDED`` and ``MEASURED`` where its parts are no wires.
 
     Raises:
         PartError: a part has not the ports that its role asks for.
@@ -170,8 +180,8 @@ def robot_diagram(formation: Formation, robot: int) -> Diagram:
         "tracking_error": _true_error(builder, error, state, measured) if sensor else error,
         "control_force": applied,
     }
-    if plant.HasOutputPort(ACCELERATION):
-        told[ACCELERATION] = plant.GetOutputPort(ACCELERATION)
+    for name in filter(plant.HasOutputPort, ROBOT_OPTIONS):
+        told[name] = plant.GetOutputPort(name)
     if computer or actuator:
         told[DEMANDED] = demanded
     if sensor:
@@ -280,8 +290,9 @@ def _carry(
         if not robot.HasInputPort("load"):
             raise PartError(f"{plant.called()}: its block has no input port 'load' for what {part.called()} exerts")
         builder.Connect(block.GetOutputPort(name), robot.GetInputPort("load"))
-    for name in OBJECT_OUTPUTS:
-        builder.ExportOutput(block.GetOutputPort(name), f"object_{name}")
+    for name in (*OBJECT_OUTPUTS, NODES):
+        if name in OBJECT_OUTPUTS or block.HasOutputPort(name):
+            builder.ExportOutput(block.GetOutputPort(name), f"object_{name}")
     return block
 
 

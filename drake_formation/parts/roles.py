@@ -93,6 +93,7 @@ ROLES: dict[str, Role] = {
                 Port("state", STATE, "position and velocity where it holds the object (m, m/s)", required=True),
                 Port("spring_force", 2, "what the object exerts on the robot (N)", required=True),
                 Port("acceleration", 2, "of where it holds the object, unless that is the forces by its mass (m/s²)"),
+                Port("heading", 1, "of its body, from +x counter-clockwise, if it has one (rad)"),
             ),
         ),
         Role("spring", ("springs",), "", "hookean", "edge", chooser="law"),
@@ -154,6 +155,7 @@ ROLES: dict[str, Role] = {
                 Port("grip_force_j", 2, "what it exerts on robot j, zero during aggregation (N)", required=True),
                 Port("pose", 6, "place of its centre, heading, and their rates (m, rad, m/s, rad/s)", required=True),
                 Port("strain", 1, "how far it is strained, as a share of its size (1)", required=True),
+                Port("nodes", None, "places of the nodes of a grid, row by row, x and y of each, if it has them (m)"),
             ),
         ),
         Role(

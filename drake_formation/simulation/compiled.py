@@ -5,7 +5,6 @@ from numpy.typing import NDArray
 from pydrake.systems.framework import Context, Diagram
 
 from drake_formation.config.errors import Fault, shown
-from drake_formation.diagram import ACCELERATION
 from drake_formation.lowering import CompiledDiagram, Status, lower
 from drake_formation.scenario import Scenario, ScenarioError, resolve
 from drake_formation.simulation.engine import Start
@@ -192,6 +191,6 @@ class CompiledRecording:
         """Whether a port is recorded."""
         return port in self._ports
 
-    def accelerations(self) -> dict[int, Array]:
-        """Acceleration of each robot that has such a port (m/s²), from 0, each of shape (samples, 2)."""
-        return {robot: self.series(ACCELERATION)[:, k] for k, robot in enumerate(self._telling)}
+    def told(self, port: str) -> dict[int, Array]:
+        """Values of one of ``ROBOT_OPTIONS`` by robot that has it, from 0, each of shape (samples, size)."""
+        return {robot: self.series(port)[:, k] for k, robot in enumerate(self._telling[port])}

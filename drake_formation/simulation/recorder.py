@@ -7,20 +7,23 @@ import numpy as np
 from numpy.typing import NDArray
 from pydrake.systems.framework import Context, Diagram, EventStatus
 
-from drake_formation.diagram import ACCELERATION, DEMANDED, MEASURED, OBJECT_OUTPUTS
+from drake_formation.diagram import DEMANDED, MEASURED, NODES, OBJECT_OUTPUTS, ROBOT_OPTIONS
 from drake_formation.failing import BROKEN_OUTPUTS, DRIVEN
 from drake_formation.parameters import robot_name
 
 Array = NDArray[np.float64]
 
 RECORDED = ("state", "tracking_error", "tracking_force", "consensus_force", "avoidance_force", "spring_force")
-"""Output ports of every robot that a run records; the rest follows from them, and from ``ACCELERATION`` where it is."""
+"""Output ports of every robot that a run records; the rest follows from them and from ``ROBOT_OPTIONS``."""
 
 IN_PLACE_OF = {DEMANDED: "control_force", MEASURED: "state"}
 """Ports that some robots have, and which port of the others tells the same; recorded of all where any has it."""
 
 OBJECT = tuple(f"object_{name}" for name in OBJECT_OUTPUTS)
 """Output ports of an object that is a body of its own, which are recorded as those of one robot are."""
+
+OBJECT_NODES = f"object_{NODES}"
+"""Likewise, of an object that is a grid."""
 
 
 class NonFiniteStateError(ArithmeticError):
@@ -44,21 +47,22 @@ class Recording(Protocol):
     def has(self, port: str) -> bool:
         """Whether a port is recorded; not all formations have all."""
 
-    def accelerations(self) -> dict[int, Array]:
-        """Acceleration of each robot that has such a port (m/s²), from 0, each of shape (samples, 2)."""
+    def told(self, port: str) -> dict[int, Array]:
+        """Values of one of ``ROBOT_OPTIONS`` by robot that has it, from 0, each of shape (samples, size)."""
 
 
-def telling(diagram: Diagram, robots: int) -> dict[int, str]:
-    """The ports ``ACCELERATION`` of a formation diagram, by robot from 0."""
-    ports = {i: f"{robot_name(i)}_{ACCELERATION}" for i in range(robots)}
-    return {i: name for i, name in ports.items() if diagram.HasOutputPort(name)}
+def telling(diagram: Diagram, robots: int) -> dict[str, dict[int, str]]:
+    """Which of ``ROBOT_OPTIONS`` a formation diagram has: output ports by robot from 0."""
+    ports = {option: {i: f"{robot_name(i)}_{option}" for i in range(robots)} for option in ROBOT_OPTIONS}
+    return {
+        option: {i: name for i, name in its.items() if diagram.HasOutputPort(name)} for option, its in ports.items()
+    }
 
 
 def recorded_ports(diagram: Diagram, robots: int) -> dict[str, list[str]]:
     """What is recorded of a formation diagram: its output ports by what they tell, one a robot or one in all."""
     ports = {name: [f"{robot_name(i)}_{name}" for i in range(robots)] for name in RECORDED}
-    if told := telling(diagram, robots):
-        ports[ACCELERATION] = list(told.values())
+    ports |= {option: list(its.values()) for option, its in telling(diagram, robots).items() if its}
     if telling_channels := traffic_ports(diagram):
         ports["traffic"] = telling_channels
     for name, same in IN_PLACE_OF.items():
@@ -68,7 +72,8 @@ def recorded_ports(diagram: Diagram, robots: int) -> dict[str, list[str]]:
             ports[name] = [
                 own if diagram.HasOutputPort(own) else other for own, other in zip(names, others, strict=True)
             ]
-    return ports | {name: [name] for name in (*OBJECT, DRIVEN, *BROKEN_OUTPUTS) if diagram.HasOutputPort(name)}
+    whole = (*OBJECT, OBJECT_NODES, DRIVEN, *BROKEN_OUTPUTS)
+    return ports | {name: [name] for name in whole if diagram.HasOutputPort(name)}
 
 
 def traffic_ports(diagram: Diagram) -> list[str]:
@@ -141,9 +146,9 @@ class Recorder:
         """Whether a port is recorded."""
         return port in self._ports
 
-    def accelerations(self) -> dict[int, Array]:
-        """Acceleration of each robot that has such a port (m/s²), from 0, each of shape (samples, 2)."""
-        return {robot: self.series(ACCELERATION)[:, k] for k, robot in enumerate(self._telling)}
+    def told(self, port: str) -> dict[int, Array]:
+        """Values of one of ``ROBOT_OPTIONS`` by robot that has it, from 0, each of shape (samples, size)."""
+        return {robot: self.series(port)[:, k] for k, robot in enumerate(self._telling[port])}
 
 
 def _shown(port: Any, context: Context) -> Array:

@@ -52,13 +52,15 @@ SOMETIMES = {
     "measured_velocity": (VECTOR, "m/s", "velocity that a robot takes for its own"),
     "object_pose": (("time", "pose"), "m, m, rad, m/s, m/s, rad/s", "place and heading of the object and their rates"),
     "object_strain": (("time",), "1", "strain of the object"),
+    "object_nodes": (("time", "node", "axis"), "m", "places of the nodes of the object, row by row"),
+    "heading": (("time", "robot"), "rad", "heading of a robot's body, from +x counter-clockwise"),
     "traffic": (("time", "channel", "count"), "1, and s", "packets so far, and when the one in use was sent"),
     "obstacle_outline": (("time", "obstacle", "vertex", "axis"), "m", "vertices of an obstacle"),
     "robot_radius": (("robot",), "m", "radius of a robot's footprint"),
 }
 """Those there are where the computer or actuators of a robot, or its sensors, are no wires, where the object is a
-body of its own, where channels carry packets, where obstacles are no circles or move, and where robots have
-footprints."""
+body of its own or a grid, where robots have headings, where channels carry packets, where obstacles are no circles or
+move, and where robots have footprints."""
 
 FAILING_VARIABLES = {
     "driven": (("time", "robot"), "1", "1 while the drives of a robot work, else 0"),
@@ -81,8 +83,9 @@ def labelled_result(series: Series) -> "xr.Dataset":
         (``1-2``) and ``obstacle`` (from 1). ``control_force`` is what acts on the robots; where the computer or the
         actuators of any are no wires, ``demanded_force`` is what is asked of the actuators. Where sensors are none,
         ``measured_position`` and ``measured_velocity`` are what robots take for their own and send; all else is true.
-        An object that is a body of its own has ``object_pose`` over ``pose``, and ``object_strain``, as its kind says.
-        Obstacles that are no circles or move have ``obstacle_outline`` over ``vertex``.
+        An object that is a body of its own has ``object_pose`` over ``pose``, ``object_strain``, as its kind says, and
+        ``object_nodes`` over ``node`` if it is a grid. ``heading`` is there if any robot has one, and NaN for those
+        that have none. Obstacles that are no circles or move have ``obstacle_outline`` over ``vertex``.
         Channels that carry packets have ``traffic`` over ``channel`` (what robot 2 tells robot 1 is ``2-1``) and
         ``count``.
         ``deviation`` is NaN before the hand-off. A sample at the hand-off shows what is so from then on. Between
@@ -110,6 +113,8 @@ def labelled_result(series: Series) -> "xr.Dataset":
     }
     if "object_pose" in series:
         coordinates["pose"] = list(POSE)
+    if "object_nodes" in series:
+        coordinates["node"] = np.arange(1, series["object_nodes"].shape[1] + 1)
     happened, when = labelled_events(found_events(series))
     if "traffic" in series:
         pairs = formation.channels.pairs[list(formation.telling_channels)].tolist()

@@ -6,14 +6,14 @@ from functools import reduce
 import numpy as np
 from numpy.typing import NDArray
 
-from drake_formation.diagram import DEMANDED, MEASURED
+from drake_formation.diagram import ACCELERATION, DEMANDED, HEADING, MEASURED
 from drake_formation.failing import BROKEN_OUTPUTS, DRIVEN
 from drake_formation.parts.objects.breaking import breaks
 from drake_formation.scenario import Scenario, resolve
 from drake_formation.simulation.acting import acting, may_let_go
 from drake_formation.simulation.choice import Choice
 from drake_formation.simulation.motion import Motion
-from drake_formation.simulation.recorder import OBJECT, Recording
+from drake_formation.simulation.recorder import OBJECT, OBJECT_NODES, Recording
 from drake_formation.systems.consensus_error import consensus_errors
 from drake_formation.vectors import length_of
 
@@ -99,6 +99,12 @@ def time_series(scenario: Scenario, choice: Choice, run: Recording, nominal: Rec
     if formation.has_body:
         pose, strain = (run.series(name)[:, 0] for name in OBJECT)
         arrays |= {"object_pose": pose, "object_strain": strain[:, 0]}
+    if run.has(OBJECT_NODES):
+        arrays["object_nodes"] = run.series(OBJECT_NODES).reshape(len(run.times), -1, 2)
+    if told := run.told(HEADING):
+        arrays["heading"] = np.full(position.shape[:2], np.nan)
+        for robot, heading in told.items():
+            arrays["heading"][:, robot] = heading[:, 0]
     if formation.telling_channels:
         arrays["traffic"] = run.series("traffic")
     if breaks(formation):
@@ -126,7 +132,7 @@ def recorded_motion(scenario: Scenario, run: Recording) -> Motion:
     position, velocity = state[..., :2], state[..., 2:]
     forces = applied_force(run) + run.series("spring_force")
     acceleration = forces / resolve(scenario).masses[:, None]
-    for robot, told in run.accelerations().items():
+    for robot, told in run.told(ACCELERATION).items():
         acceleration[:, robot] = told
     return Motion(run.times, position, velocity, acceleration)
 

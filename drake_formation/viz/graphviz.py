@@ -9,23 +9,30 @@ Depth 1 of a formation is the paper's Fig. 2. One robot, ``diagram.GetSubsystemB
 depth 2 of a formation shows both at once.
 """
 
-import html
-import re
-from collections.abc import Collection, Iterable, Iterator
-from itertools import zip_longest
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import NamedTuple, TypeGuard
 
 import networkx as nx
 from pydrake.systems.framework import Diagram, InputPortIndex, OutputPortIndex, System
 
+from drake_formation.viz.graphviz_blocks import (
+    FILLS,
+    SIGNAL,
+    End,
+    block_line,
+    block_name,
+    border_line,
+    bundle_name,
+    column_line,
+    last_name,
+    port_cells,
+    port_names,
+    title_table,
+    wire_colour,
+    wire_line,
+)
 from drake_formation.viz.rendering import render, svg
-
-# A wire is coloured by the first word of the input port it enters, a block filled by what it is.
-WIRES = {"spring": "#d95f02", "channel": "#1f78b4"}
-SIGNAL = "#8a8a8a"
-FILLS = {"diagram": "#e8f0fe", "has state": "#fdebd0", "no state": "#eaf5e6"}
-EXPORTED = "#1a7f37"
 
 
 def write_diagram(diagram: Diagram, path: Path, depth: int = 1) -> None:
@@ -38,7 +45,7 @@ def diagram_svg(diagram: Diagram, depth: int = 1) -> str:
     return svg(diagram_dot(diagram, depth))
 
 
-def diagram_dot(diagram: Diagram, depth: int = 1) -> str:
+def diagram_dot(diagram: Diagram, depth: int = 1, *, bundled: bool = False) -> str:
     """A diagram in Graphviz's language, the same text for every build of the same diagram.
 
     Every block, port and connection is there, with two liberties. A wire from a nested diagram that closes a loop would
@@ -48,13 +55,14 @@ def diagram_dot(diagram: Diagram, depth: int = 1) -> str:
     Args:
         diagram: what to draw.
         depth: 1 draws each subsystem as one block; 2 opens those that are diagrams, and so on.
+        bundled: draw ports that differ in their number alone, such as ``spring_2`` and ``spring_3``, as one.
 
     Raises:
         ValueError: the depth is less than 1.
     """
     if depth < 1:
         raise ValueError(f"a depth of {depth} shows nothing; 1 shows the subsystems")
-    level = _Level(diagram, _name(diagram), depth)
+    level = _Level(diagram, block_name(diagram), depth, bundled)
     is_whole = diagram.num_input_ports() == 0
     picture = "\n".join(level.contents(mark_exports=True) if is_whole else level.boxed())
     # Straight wires are easier to follow, but those that run back, as inside a robot, would cling to the blocks.
@@ -67,7 +75,7 @@ node [shape=plain, fontname="Helvetica", fontsize=11]
 edge [arrowsize=0.6]
 {picture}
 labelloc=t
-label=<{_title(level.node if is_whole else "", picture)}>
+label=<{title_table(level.node if is_whole else "", picture)}>
 }}
 """
 
@@ -81,14 +89,6 @@ class _Wire(NamedTuple):
     input: int
 
 
-class _End(NamedTuple):
-    """One end of a wire: where it is in the picture, and the block and port it belongs to."""
-
-    place: str
-    block: str
-    port: str
-
-
 class _Level:
     """One diagram in the picture, and what is drawn inside it.
 
@@ -96,9 +96,9 @@ class _Level:
     opened diagram holds either kind in a node of its own.
     """
 
-    def __init__(self, diagram: Diagram, node: str, depth: int) -> None:
-        self.diagram, self.node, self.depth = diagram, node, depth
-        self.nodes = {system: f"{node}::{_name(system, i)}" for i, system in enumerate(diagram.GetSystems())}
+    def __init__(self, diagram: Diagram, node: str, depth: int, bundled: bool) -> None:
+        self.diagram, self.node, self.depth, self.bundled = diagram, node, depth, bundled
+        self.nodes = {system: f"{node}::{block_name(system, i)}" for i, system in enumerate(diagram.GetSystems())}
         self.wires = self._wires()
         graph = nx.DiGraph((wire.source, wire.sink) for wire in self.wires)
         self.loops = {s: n for n, loop in enumerate(nx.strongly_connected_components(graph)) for s in loop}
@@ -112,20 +112,27 @@ class _Level:
     def boxed(self, exported: Collection[int] = ()) -> Iterator[str]:
         """The diagram as a box, with its own ports at the left and right border."""
         yield f'subgraph "cluster {self.node}" {{'
-        yield f'label=<<B>{_last(self.node)}</B>>; bgcolor="{FILLS["diagram"]}"; style=rounded'
-        yield from _border(f"{self.node} u", _cells("u", self.diagram))
+        yield f'label=<<B>{last_name(self.node)}</B>>; bgcolor="{FILLS["diagram"]}"; style=rounded'
+        yield from border_line(f"{self.node} u", port_cells("u", self._ports("u", self.diagram)))
         yield from self.contents()
-        yield from _border(f"{self.node} y", _cells("y", self.diagram, exported))
-        for i, port in enumerate(_ports("u", self.diagram)):
-            border = _End(f'"{self.node} u":u{i}', _last(self.node), port)
+        yield from border_line(f"{self.node} y", port_cells("y", self._ports("y", self.diagram), exported))
+        yield from dict.fromkeys(self._border_edges())  # each once, also where ports are bundled
+        yield "}"
+
+    def _border_edges(self) -> Iterator[str]:
+        """Wires from the diagram's own input ports and to its output ports."""
+        names = self._ports("u", self.diagram)
+        for i, port in enumerate(names):
+            border = End(f'"{self.node} u":u{names.index(port)}', last_name(self.node), port)
             sinks = self.diagram.GetInputPortLocators(InputPortIndex(i))
             # Drake lists these, like connections, in the order of addresses.
             for system, j in sorted(sinks, key=lambda sink: (list(self.nodes).index(sink[0]), sink[1])):
-                yield _edge(border, self._end("u", system, int(j)), _color(port))
-        for i, port in enumerate(_ports("y", self.diagram)):
+                yield wire_line(border, self._end("u", system, int(j)), wire_colour(port))
+        names = self._ports("y", self.diagram)
+        for i, port in enumerate(names):
             system, j = self.diagram.get_output_port_locator(OutputPortIndex(i))
-            yield _edge(self._end("y", system, int(j)), _End(f'"{self.node} y":y{i}', _last(self.node), port), SIGNAL)
-        yield "}"
+            border = End(f'"{self.node} y":y{names.index(port)}', last_name(self.node), port)
+            yield wire_line(self._end("y", system, int(j)), border, SIGNAL)
 
     def contents(self, mark_exports: bool = False) -> Iterator[str]:
         """The blocks and the wires between them."""
@@ -134,28 +141,33 @@ class _Level:
         for system, node in self.nodes.items():
             exported = [int(port) for block, port in exports if block is system]
             if self._is_open(system):
-                yield from _Level(system, node, self.depth - 1).boxed(exported)
+                yield from _Level(system, node, self.depth - 1, self.bundled).boxed(exported)
             else:
-                yield _block(node, system, exported)
+                yield block_line(node, system, self._ports("u", system), self._ports("y", system), exported)
         yield from self._tags()
+        yield from dict.fromkeys(self._edges())
+
+    def _edges(self) -> Iterator[str]:
+        """The wires between the blocks."""
         for wire in self.wires:
             source, sink = self._end("y", wire.source, wire.output), self._end("u", wire.sink, wire.input)
             if self._is_feedback(wire):
                 source = source._replace(place=f'"{self._tag(wire)}"')
-            yield _edge(source, sink, _color(sink.port))
+            yield wire_line(source, sink, wire_colour(sink.port))
 
     def _tags(self) -> Iterator[str]:
         """The tags in a column, each beside the block whose output it is."""
         tags = {self._tag(wire): self._node("u", wire.source) for wire in self.wires if self._is_feedback(wire)}
         for tag, block in tags.items():
-            yield f'"{tag}" [shape=cds, style=filled, fillcolor=white, fontsize=10, height=0.25, label="{_last(tag)}"]'
+            look = "shape=cds, style=filled, fillcolor=white, fontsize=10, height=0.25"
+            yield f'"{tag}" [{look}, label="{last_name(tag)}"]'
             yield f'"{tag}" -> "{block}" [style=invis, weight=100]'
         if tags and self.depth == 1:  # Nodes in boxes cannot be told to share a column.
-            yield _column(tags)
-            yield _column(tags.values())
+            yield column_line(tags)
+            yield column_line(tags.values())
 
     def _tag(self, wire: _Wire) -> str:
-        return f"{self.nodes[wire.source]}.{_ports('y', wire.source)[wire.output]}"
+        return f"{self.nodes[wire.source]}.{self._ports('y', wire.source)[wire.output]}"
 
     def _is_feedback(self, wire: _Wire) -> bool:
         return isinstance(wire.source, Diagram) and self.loops[wire.source] == self.loops[wire.sink]
@@ -167,88 +179,12 @@ class _Level:
         """The node that holds a block's ports."""
         return f"{self.nodes[system]} {kind}" if self._is_open(system) else self.nodes[system]
 
-    def _end(self, kind: str, system: System, port: int) -> _End:
-        place = f'"{self._node(kind, system)}":{kind}{port}'
-        return _End(place, _last(self.nodes[system]), _ports(kind, system)[port])
+    def _end(self, kind: str, system: System, port: int) -> End:
+        names = self._ports(kind, system)
+        place = f'"{self._node(kind, system)}":{kind}{names.index(names[port])}'
+        return End(place, last_name(self.nodes[system]), names[port])
 
-
-def _edge(source: _End, sink: _End, color: str) -> str:
-    """A wire; the names of its ports show under the mouse in an SVG."""
-    tooltip = f"{source.block}.{source.port} → {sink.block}.{sink.port}"
-    return f'{source.place}:e -> {sink.place}:w [color="{color}", tooltip="{tooltip}"]'
-
-
-def _color(input_port: str) -> str:
-    return WIRES.get(input_port.partition("_")[0], SIGNAL)
-
-
-def _column(nodes: Iterable[str]) -> str:
-    """Nodes one below the other, in this order."""
-    return "{rank=same; edge [style=invis]; " + " -> ".join(f'"{node}"' for node in dict.fromkeys(nodes)) + "}"
-
-
-def _block(node: str, system: System, exported: Collection[int]) -> str:
-    """A block with its name, its type, its inputs on the left and its outputs on the right."""
-    cells = zip_longest(_cells("u", system), _cells("y", system, exported), fillvalue="<TD></TD>")
-    ports = "".join(f"<TR>{u}{y}</TR>" for u, y in cells)
-    kind = f'<FONT POINT-SIZE="9" COLOR="#606060">{_type(system)}</FONT>'
-    title = f'<TR><TD COLSPAN="2"><B>{_last(node)}</B><BR/>{kind}</TD></TR>'
-    style = f'BORDER="1" CELLBORDER="0" CELLSPACING="0" CELLPADDING="3" STYLE="ROUNDED" BGCOLOR="{_fill(system)}"'
-    return f'"{node}" [label=<<TABLE {style}>{title}{ports}</TABLE>>]'
-
-
-def _border(node: str, cells: list[str]) -> Iterator[str]:
-    """The ports of an opened diagram, one above the other, if it has any."""
-    if cells:
-        rows = "".join(f"<TR>{cell}</TR>" for cell in cells)
-        yield f'"{node}" [label=<<TABLE BORDER="0" CELLBORDER="1" CELLSPACING="2" BGCOLOR="white">{rows}</TABLE>>]'
-
-
-def _cells(kind: str, system: System, exported: Collection[int] = ()) -> list[str]:
-    align = {"u": "LEFT", "y": "RIGHT"}[kind]
-    names = enumerate(_ports(kind, system))
-    texts = [f'<FONT COLOR="{EXPORTED}">{name}</FONT>' if i in exported else name for i, name in names]
-    return [f'<TD PORT="{kind}{i}" ALIGN="{align}">{text}</TD>' for i, text in enumerate(texts)]
-
-
-def _title(name: str, picture: str) -> str:
-    """The name of the diagram above a legend of the colours in the picture."""
-    wires = {**WIRES, "signal": SIGNAL}
-    legend = [f'<TD BGCOLOR="{color}">{kind}</TD>' for kind, color in FILLS.items() if color in picture]
-    legend += [f'<TD BORDER="2" SIDES="B" COLOR="{c}">{kind}</TD>' for kind, c in wires.items() if c in picture]
-    legend += [f'<TD><FONT COLOR="{EXPORTED}">exported port</FONT></TD>'] if EXPORTED in picture else []
-    heading = f'<TR><TD COLSPAN="{len(legend)}"><FONT POINT-SIZE="18"><B>{name}</B></FONT></TD></TR>' if name else ""
-    return f'<TABLE BORDER="0" CELLSPACING="8" CELLPADDING="3">{heading}<TR>{"".join(legend)}</TR></TABLE>'
-
-
-def _name(system: System, index: int = 0) -> str:
-    """A block's name; its number replaces the address in the name Drake gives a nameless one."""
-    return _text(re.sub(r"@[0-9a-f]{16}$", f"@{index}", system.get_name())) or "diagram"
-
-
-def _type(system: System) -> str:
-    """A block's class without module and scalar type: ``Adder`` for ``drake::systems::Adder<double>``."""
-    return _text(re.split(r"::|\.", re.split(r"_?[<\[]", system.GetSystemType())[0])[-1])
-
-
-def _fill(system: System) -> str:
-    if isinstance(system, Diagram):
-        return FILLS["diagram"]
-    states = system.num_continuous_states() + system.num_discrete_state_groups() + system.num_abstract_states()
-    return FILLS["has state" if states else "no state"]
-
-
-def _ports(kind: str, system: System) -> list[str]:
-    """Names of the input ports (u) or the output ports (y)."""
-    if kind == "u":
-        return [_text(system.get_input_port(i).get_name()) for i in range(system.num_input_ports())]
-    return [_text(system.get_output_port(i).get_name()) for i in range(system.num_output_ports())]
-
-
-def _text(name: str) -> str:
-    """A name fit for Graphviz's labels and quotes alike."""
-    return html.escape(name).replace("\\", "&#92;")
-
-
-def _last(node: str) -> str:
-    return node.rpartition("::")[-1]
+    def _ports(self, kind: str, system: System) -> list[str]:
+        """Names of the input ports (u) or the output ports (y); those of a bundle are alike."""
+        names = port_names(kind, system)
+        return [bundle_name(name) for name in names] if self.bundled else names

@@ -47,11 +47,16 @@ def grown(vertices: Array, radius: float, **style: Any) -> Patch:
     """The patch of all points within a radius (m) of a point, a segment or a polygon (m), shape (vertices, 2)."""
     if len(vertices) == 1:
         return Circle((float(vertices[0, 0]), float(vertices[0, 1])), radius, **style)
+    return Outline(grown_outline(vertices, radius), **style)
+
+
+def grown_outline(vertices: Array, radius: float) -> Array:
+    """Corners of what is within a radius of a segment or a polygon (m), shape (corners, 2); the last is the first."""
     from shapely import LineString, Polygon  # slow to import, and most obstacles are circles
 
     shape = LineString(vertices) if len(vertices) == 2 else Polygon(vertices)
     thin = 1e-3 * max(shape.length, radius)  # a wall without width is drawn as a line
-    return Outline(np.array(shape.buffer(max(radius, thin)).exterior.coords), **style)
+    return np.array(shape.buffer(max(radius, thin)).exterior.coords)
 
 
 def _places(obstacle: xr.Dataset, times: list[float]) -> list[Array]:

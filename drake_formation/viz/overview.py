@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from drake_formation.vectors import length
+from drake_formation.viz.ages import ages
 from drake_formation.viz.events import draw_events
 from drake_formation.viz.figures import (
     draw_formation,
@@ -84,14 +85,6 @@ def _draw_error(axes: Axes, result: xr.Dataset) -> None:
     largest = float(error.where(result["phase"] == 1).max())
     axes.set(xlabel="time (s)", ylabel="consensus error (cm)", ylim=(0.0, 1.1 * largest if largest > 0 else 1.0))
     mark_transport(axes, result, only=True)
-
-
-def ages(result: xr.Dataset, times: Array) -> Array:
-    """How old what is known over each channel is (s), shape (channels, times)."""
-    known = result["traffic"].sel(count="sent_at").values
-    later = np.minimum(np.searchsorted(result["time"].values, times), len(known) - 1)
-    found: Array = (times[:, None] - known[later]).T
-    return found
 
 
 def _draw_ages(figure: Figure, axes: Axes, result: xr.Dataset) -> None:

@@ -51,6 +51,15 @@ def svg(dot: str) -> str:
     return _graphviz(dot, "-Tsvg").decode()
 
 
+def laid_out(dot: str) -> str:
+    """Graphviz's language with where everything is.
+
+    Raises:
+        ValueError: the text is not Graphviz's language.
+    """
+    return _graphviz(dot, "-Tdot").decode()
+
+
 def _graphviz(dot: str, *options: str) -> bytes:
     """What Graphviz makes of the text."""
     run = subprocess.run([_program(), *options], input=dot.encode(), capture_output=True, check=False)

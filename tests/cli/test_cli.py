@@ -121,6 +121,19 @@ def test_graphviz_draws_the_diagram(cli, suffix):
     assert Path(f"line.{suffix}").stat().st_size > 1000
 
 
+@pytest.mark.parametrize("suffix", ["dot", "svg", "png", "pdf"])
+def test_graphviz_draws_the_formation(cli, suffix):
+    assert cli("graphviz", "line", "-o", f"line.{suffix}", "--view", "formation")[0] == 0
+    assert Path(f"line.{suffix}").stat().st_size > 1000
+
+
+def test_graphviz_refuses_a_depth_of_the_formation(cli):
+    status, _, err = cli("graphviz", "line", "-o", "line.svg", "--view", "formation", "--depth", "2")
+    assert status == 2
+    assert "--depth" in err
+    assert not Path("line.svg").exists()
+
+
 @pytest.mark.parametrize("output", ["line.gif", "missing/line.svg"])
 def test_graphviz_refuses_what_it_cannot_write(cli, output):
     status, _, err = cli("graphviz", "line", "-o", output)

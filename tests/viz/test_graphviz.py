@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from pydrake.systems.framework import Diagram, DiagramBuilder, LeafSystem
 from pydrake.systems.primitives import Adder
 
-from drake_formation.viz.graphviz import SIGNAL, WIRES, diagram_dot, write_diagram
+from drake_formation.viz.graphviz import diagram_dot, write_diagram
+from drake_formation.viz.graphviz_blocks import SIGNAL, WIRES
 from drake_formation.viz.rendering import render
 
 EDGE = re.compile(r'^(".+?"(?::y\d+|:u\d+)?):e -> (".+?":[uy]\d+):w \[color="(#\w+)", tooltip="(.+) → (.+)"\]$', re.M)

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from drake_formation import load_scenario, simulate
-from drake_formation.viz.overview import ages, overview
+from drake_formation.viz.ages import ages
+from drake_formation.viz.overview import overview
 
 QUICK = {"aggregation.duration": 1.0, "transport.duration": 3.0, "consensus.delta": 20.0, "consensus.delta_v": 20.0}
 

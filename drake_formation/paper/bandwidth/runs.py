@@ -61,7 +61,7 @@ def nearest_in_formation(formation: Formation) -> list[int]:
 
 def passes(formation: Formation) -> NDArray[np.float64]:
     """How near each robot's slot comes to each obstacle on the straight way to the goal (m), shape (N, obstacles)."""
-    begin = (formation.centre + formation.slots)[:, None] - formation.obstacles[:, :2]
+    begin = (formation.centre + formation.slots)[:, None] - formation.obstacles.middles
     return least_length(begin, np.broadcast_to(formation.goal - formation.centre, begin.shape))
 
 

@@ -35,6 +35,10 @@ class Mechanics(ABC):
     def pose(self, state: Any, numbers: Sequence[Any]) -> Sequence[Any]:
         """Place of the centre of mass, heading, and their rates (m, rad, m/s, rad/s)."""
 
+    def nodes(self, state: Any) -> Any:
+        """Places of the nodes of a grid, row by row, x and y of each (m); none by default."""
+        return state[:0]
+
     @abstractmethod
     def strain(self, state: Any, stretches: Sequence[Pair], numbers: Sequence[Any]) -> Any:
         """How far it is strained (1), as its kind says; stretches are how far robots are off their points (m)."""
@@ -50,8 +54,8 @@ def CarriedBody_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
         Its state is that of its mechanics. Input ports: for every robot j ``state_j`` (m, m/s, size 4), and ``phase``
         (0 aggregation, 1 transport); where grips may break or be let go, ``intact`` and ``held`` have for every robot 1
         while its grip acts, else 0. Output ports: for every robot ``grip_force_j``, what the object exerts on it (N,
-        size 2, zero during aggregation), ``pose`` (size 6) and ``strain`` (size 1). Parameters: 0, stiffness and
-        damping of a grip (N/m, N s/m); then the mechanics' groups.
+        size 2, zero during aggregation), ``pose`` (size 6), ``strain`` (size 1) and, if its mechanics have any,
+        ``nodes`` (m). Parameters: 0, stiffness and damping of a grip (N/m, N s/m); then the mechanics' groups.
         """
 
         def _construct(
@@ -95,6 +99,8 @@ def CarriedBody_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             self.DeclareVectorOutputPort("pose", POSE, self._calc_pose, own)
             read = {self.input_port_ticket(port.get_index()) for port in (*self._states, *self._releases)}
             self.DeclareVectorOutputPort("strain", 1, self._calc_strain, own | read)
+            if nodes := len(mechanics.nodes(np.asarray(initial_state))):
+                self.DeclareVectorOutputPort("nodes", nodes, self._calc_nodes, own)
 
         def _construct_copy(self, other: Any, converter: Any = None) -> None:
             Impl._construct(self, *other.arguments, releases=other.releases, converter=converter)
@@ -141,6 +147,10 @@ def CarriedBody_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             stretches = [(q[0] - p[0], q[1] - p[1]) for q, p in zip(places, points, strict=True)]
             acting = self._acting(context, self._robots, stretches)
             output.SetFromVector(np.array([self._mechanics.strain(state, acting, numbers)]))
+
+        def _calc_nodes(self, context: Any, output: Any) -> None:
+            state, _ = self._read(context)
+            output.SetFromVector(self._mechanics.nodes(state))
 
         def DoCalcTimeDerivatives(self, context: Any, derivatives: Any) -> None:  # noqa: N802 - Drake's name
             state, numbers = self._read(context)

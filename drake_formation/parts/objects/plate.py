@@ -145,6 +145,10 @@ class PlateMechanics(Mechanics):
         rate = (along * across_rate - across * along_rate) / (along * along + across * across)
         return [x, y, atan2(across, along), vx, vy, rate]
 
+    def nodes(self, state: Any) -> Any:
+        """Of its state, the places."""
+        return state[: len(state) // 2]
+
     @quiet
     def strain(self, state: Any, stretches: Sequence[Pair], numbers: Sequence[Any]) -> Scalar:  # noqa: ARG002
         """The largest share by which any spring of the plate is longer or shorter than at rest."""

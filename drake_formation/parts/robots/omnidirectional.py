@@ -144,6 +144,7 @@ class Omnidirectional(Robot):
         )
 
     dynamics = staticmethod(omnidirectional_motion)
+    has_heading = True
 
     @property
     def angles(self) -> tuple[Array, Array]:

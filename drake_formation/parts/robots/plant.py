@@ -35,9 +35,9 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
         ``held`` have for each neighbour 1 while its spring acts, else 0; where the robot may fail, ``failure`` has the
         share of the control force that its drives give, 0 while its brakes take up all forces and else 1, and 1/τ
         (1/s) of v̇ = −v/τ while they do, else 0. Output ports: ``state`` x = [q; v], ``spring_force``
-        −Σ F_ij and the load (N) and, unless it is the sum of the forces by the mass, ``acceleration`` v̇ (m/s²).
-        Parameters: the groups of the dynamics; last, for each neighbour in port order the numbers of the spring law
-        and the desired displacement h_i − h_j (m, two numbers).
+        −Σ F_ij and the load (N), unless it is the sum of the forces by the mass ``acceleration`` v̇ (m/s²), and where
+        the first inner state is one ``heading`` (rad). Parameters: the groups of the dynamics; last, for each neighbour
+        in port order the numbers of the spring law and the desired displacement h_i − h_j (m, two numbers).
         """
 
         def _construct(
@@ -53,6 +53,7 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             load: bool = False,
             releases: Sequence[str] = (),
             may_fail: bool = False,
+            heading: bool = False,
             converter: Any = None,
         ) -> None:
             """Make the plant.
@@ -68,11 +69,18 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
                 load: whether to have that input port.
                 releases: which of the input ports ``intact`` and ``held`` to have.
                 may_fail: whether to have the input port ``failure``.
+                heading: whether to have that output port: the first inner state.
                 converter: for Drake's scalar conversion.
             """
             LeafSystem_[T].__init__(self, converter=converter)
             self.arguments = (dynamics, neighbours, law, numbers, springs, initial_state)
-            self.options = {"acceleration": acceleration, "load": load, "releases": releases, "may_fail": may_fail}
+            self.options = {
+                "acceleration": acceleration,
+                "load": load,
+                "releases": releases,
+                "may_fail": may_fail,
+                "heading": heading,
+            }
             # All else that it computes with is a parameter.
             self.kind = dynamics, law, load, tuple(releases), may_fail
             self._dynamics, self._law = dynamics, law.law
@@ -102,6 +110,8 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             if acceleration:
                 all_read = {self.all_input_ports_ticket(), self.all_parameters_ticket()}
                 self.DeclareVectorOutputPort("acceleration", 2, self._calc_acceleration, fresh_state | all_read)
+            if heading:
+                self.DeclareVectorOutputPort("heading", 1, self._calc_heading, fresh_state)
 
         def _construct_copy(self, other: Any, converter: Any = None) -> None:
             Impl._construct(self, *other.arguments, **other.options, converter=converter)
@@ -116,6 +126,9 @@ def PlanarRobot_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
         def _calc_acceleration(self, context: Any, output: Any) -> None:
             state = context.get_continuous_state_vector().CopyToVector().tolist()
             output.SetFromVector(np.array(self._rates(context, state)[:2]))
+
+        def _calc_heading(self, context: Any, output: Any) -> None:
+            output.SetFromVector(context.get_continuous_state_vector().CopyToVector()[4:5])
 
         def _spring_force(self, context: Any, x: Scalar, y: Scalar, vx: Scalar, vy: Scalar) -> Pair:
             (phase,) = self._phase.Eval(context).tolist()

@@ -28,11 +28,13 @@ class Robot(Part):
     Attributes:
         dynamics: see :data:`drake_formation.parts.robots.plant.Dynamics`.
         may_fail: whether its drives may fail and its brakes lock: all that moves it is the control force then.
+        has_heading: whether its first inner state is a heading (rad).
     """
 
     Config = RobotNumbers
     dynamics: ClassVar[Dynamics]
     may_fail: ClassVar[bool] = False
+    has_heading: ClassVar[bool] = False
 
     def own_numbers(self) -> Numbers:
         """What its dynamics compute with, by group."""
@@ -50,7 +52,8 @@ class Robot(Part):
         """The plant."""
         *own, springs = numbers
         start, neighbours = self.initial_state(formation, owner), held_robots(formation, owner)
-        return PlanarRobot(self.dynamics, neighbours, formation.law, own, springs, start, **options(formation, owner))
+        ports = {"heading": self.has_heading, **options(formation, owner)}
+        return PlanarRobot(self.dynamics, neighbours, formation.law, own, springs, start, **ports)
 
     def initial_state(self, formation: Formation, owner: int) -> Array:
         """At its starting position, with its starting velocity."""

@@ -106,6 +106,7 @@ class Unicycle(Robot):
         )
 
     dynamics = staticmethod(unicycle_motion)
+    has_heading = True
 
     def own_numbers(self) -> Numbers:
         """Body, and the wheels where they are limited."""

@@ -40,6 +40,20 @@ def test_it_turns_as_fast_as_its_held_point_moves_sideways(heading, velocity):
     assert axle @ along == pytest.approx(velocity @ along, abs=1e-12)
 
 
+@pytest.mark.parametrize("engine", ["blocks", "compiled"])
+def test_a_result_tells_the_heading_to_which_it_turned(engine):
+    result = simulate(
+        load_scenario("line", overrides={**SHORT, **UNICYCLE, "simulator.max_step_size": 0.01}), engine=engine
+    )
+    heading, (vx, vy) = result.heading.values, np.moveaxis(result.velocity.values, -1, 0)
+    turning = (np.cos(heading) * vy - np.sin(heading) * vx) / AHEAD
+    steps = np.diff(result.time.values)[:, None]
+    turned = np.cumsum(0.5 * steps * (turning[1:] + turning[:-1]), axis=0)
+    np.testing.assert_allclose(heading[0], np.radians([100.0, -30.0]))
+    np.testing.assert_allclose(heading[1:], heading[0] + turned, atol=1e-3)
+    assert np.ptp(heading) > 0.5
+
+
 @given(st.floats(-10, 10), slow, pairs)
 def test_limited_wheels_lose_no_energy_to_the_constraint(heading, velocity, spring):
     """With wheels of next to no force, only the object changes the kinetic energy of the body."""

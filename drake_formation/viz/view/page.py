@@ -1,0 +1,94 @@
+"""A result as one page: nothing outside it is loaded, so that it can be sent, kept and opened without a network."""
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pydrake.geometry import Meshcat, MeshcatParams
+
+from drake_formation.viz.links import PRESSED, STRETCHED, largest_strain, moving_links
+from drake_formation.viz.playback import OLD, Playback
+from drake_formation.viz.view.link_drawer import CHANNEL, SILENT
+from drake_formation.viz.view.recording import record
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+DRAKES_TITLE = "<title>Drake MeshCat</title>"
+
+CAPTION = """<style>
+#caption {{ position: fixed; left: 1em; bottom: 1em; font: 14px sans-serif; color: #333; max-width: 60em;
+  padding: .3em .6em; background: rgba(247, 247, 250, .85) }}
+#caption b {{ padding: 0 .3em; border-radius: .2em; color: white; font-weight: normal }}
+</style>
+<div id="caption">{text}</div>
+"""
+
+
+def write_page(result: "xr.Dataset", path: Path, *, follow: bool = False) -> None:
+    """Write :func:`page` to a file.
+
+    Raises:
+        OSError: it cannot be written.
+        ValueError, ScenarioError: as for :func:`page`.
+    """
+    path.write_text(page(result, follow=follow), encoding="utf-8")
+
+
+def page(result: "xr.Dataset", *, follow: bool = False) -> str:
+    """The recording of a result as HTML, with all that it needs; the browser plays it.
+
+    Args:
+        result: from :func:`drake_formation.simulate`, or read from ``result.nc``.
+        follow: as for :func:`drake_formation.viz.view.record`.
+
+    Raises:
+        ValueError, ScenarioError: it is not a result of this version.
+    """
+    with quiet_meshcat() as meshcat:
+        playback = record(result, meshcat, follow=follow)
+        text: str = meshcat.StaticHtml()
+    title = escape(playback.title)
+    start, _, end = text.replace(DRAKES_TITLE, f"<title>{title}</title>").rpartition("</body>")
+    return f"{start}{CAPTION.format(text=_caption(playback))}</body>{end}"
+
+
+@contextmanager
+def quiet_meshcat(port: int | None = None) -> Iterator[Meshcat]:
+    """A Meshcat for this machine alone, without Drake's line on where it listens.
+
+    Raises:
+        RuntimeError: the port is taken.
+    """
+    log = logging.getLogger("drake")
+    level = log.level
+    log.setLevel(logging.WARNING)
+    try:
+        yield Meshcat(MeshcatParams(host="localhost", port=port, show_stats_plot=False))
+    finally:
+        log.setLevel(level)
+
+
+def _caption(playback: Playback) -> str:
+    """What is seen, and in which colours."""
+    links = moving_links(playback)
+    told = [f"<strong>{escape(playback.title)}</strong>"]
+    if any(link.rest_length is not None for link in links):
+        most = f"{100 * largest_strain(playback, links):.2g} %"
+        shorter, longer = _word("shorter", PRESSED), _word("longer", STRETCHED)
+        told.append(f"springs {shorter} or {longer} than at rest, full colour at {most}")
+    if any(link.rest_length is None for link in links):
+        told.append(f"{_word('channels', CHANNEL[:3])} come to a point at the robot that hears")
+    if any(link.mortal is not None for link in links):
+        told.append(f"{_word('grey', SILENT)} where nothing younger than {OLD:g} s is known")
+    if playback.lost:
+        told.append(f"shown until {playback.end:.4g} s, when robots were beyond all bounds")
+    return " · ".join(told)
+
+
+def _word(text: str, colour: object) -> str:
+    red, green, blue = (round(255 * share) for share in colour)  # type: ignore[attr-defined]
+    return f'<b style="background: rgb({red}, {green}, {blue})">{text}</b>'

@@ -1,0 +1,83 @@
+"""A result in a browser, with sliders: the scenario is run anew with what they say, as often as it is asked for."""
+
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from pydrake.geometry import Meshcat
+
+from drake_formation.config.errors import ScenarioError
+from drake_formation.lowering.errors import LoweringError
+from drake_formation.scenario import Scenario
+from drake_formation.simulation import PreparedRun, SimulationError
+from drake_formation.simulation.result import labelled_result, series_of
+from drake_formation.viz.view.knobs import KNOBS, Knob, changed
+from drake_formation.viz.view.recording import record
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+AGAIN, CLOSE = "run again", "close"
+"""Buttons in the browser."""
+
+POLL = 0.05
+"""How long to wait before looking at the buttons once more (s)."""
+
+
+class Session:
+    """A result in Meshcat, and beside it sliders for those of :data:`KNOBS` that its scenario has.
+
+    Args:
+        meshcat: where.
+        result: what is shown at first.
+        follow: as for :func:`drake_formation.viz.view.record`.
+        tell: called with what the user should know, such as why a run failed.
+
+    Raises:
+        ValueError, ScenarioError: it is not a result of this version.
+    """
+
+    def __init__(
+        self, meshcat: Meshcat, result: "xr.Dataset", *, follow: bool = False, tell: Callable[[str], None] = print
+    ) -> None:
+        self._meshcat, self._follow, self._tell = meshcat, follow, tell
+        self._scenario: Scenario = series_of(result).scenario
+        self._prepared: PreparedRun | None = None
+        record(result, meshcat, follow=follow)
+        self._start: dict[Knob, float] = {}
+        for knob in KNOBS:
+            if (place := knob.shown(self._scenario)) is not None:
+                self._start[knob] = meshcat.AddSlider(knob.label, knob.low, knob.high, knob.step, place)
+        meshcat.AddButton(AGAIN, "KeyR")
+        meshcat.AddButton(CLOSE)
+        self._runs = 0
+
+    def serve(self) -> None:
+        """Run again whenever that is asked for, until the session is closed."""
+        while not self._meshcat.GetButtonClicks(CLOSE):
+            if (clicks := self._meshcat.GetButtonClicks(AGAIN)) > self._runs:
+                self._runs = clicks
+                self.run_again()
+            time.sleep(POLL)
+
+    def run_again(self) -> None:
+        """Run the scenario with what the sliders say; a run that fails leaves the picture as it is."""
+        places = {knob: self._meshcat.GetSliderValue(knob.label) for knob in self._start}
+        try:
+            scenario = changed(self._scenario, places, self._start)
+            series = self._made_ready().run(scenario)
+        except (ScenarioError, SimulationError) as error:
+            self._tell(str(error))
+            return
+        record(labelled_result(series), self._meshcat, follow=self._follow)
+        moved = [f"{k.path}={k.value(place):g}" for k, place in places.items() if place != self._start[k]]
+        self._tell(f"Run with {', '.join(moved) or 'what the scenario says'}.")
+
+    def _made_ready(self) -> PreparedRun:
+        """The diagram compiled, once for all runs; or as the scenario runs best, where it cannot be."""
+        if self._prepared is None:
+            try:
+                self._prepared = PreparedRun(self._scenario, engine="compiled")
+            except (LoweringError, ScenarioError):
+                self._prepared = PreparedRun(self._scenario)
+        return self._prepared

@@ -58,6 +58,8 @@ diagrams: $(VENV)/installed
 	cp out/robot-failure/figures/paths.png diagrams/robot-failure.png
 	$(BIN)/drake-formation reproduce --only fig11 --out out/paper
 	cp out/paper/figures/fig11.png diagrams/paper-fig11.png
+	$(BIN)/drake-formation reproduce --only bandwidth --out out/bandwidth
+	cp out/bandwidth/figures/bandwidth.png diagrams/bandwidth.png
 	$(BIN)/drake-formation sweep gains --out out/gains
 	cp out/gains/figures/consensus_error_m.png diagrams/gains-consensus-error.png
 	$(BIN)/drake-formation compare avoidance --out out/avoidance

@@ -20,6 +20,7 @@ from drake_formation.scenario import Scenario, resolve
 from drake_formation.systems.consensus_error import ConsensusError
 from drake_formation.systems.hand_off import HandOff
 from drake_formation.systems.holding_sensing import HoldingSensing
+from drake_formation.systems.line_of_sight import LineOfSight
 from drake_formation.systems.sensing import NearestSensing
 
 ROBOT_OUTPUTS = (
@@ -42,7 +43,7 @@ DEMANDED, MEASURED = "demanded_force", "measured"
 OBJECT_OUTPUTS = ("pose", "strain")
 """Output ports of the carried object, where it is a body of its own, after ``object_``."""
 
-PORT_ORDER = ("phase", "reference", "spring", "load", "intact", "held", "failure", "channel", "sensed")
+PORT_ORDER = ("phase", "reference", "spring", "load", "intact", "held", "failure", "channel", "sensed", "visible")
 """Input ports of every robot, by the stem of their names, as far as its blocks have them."""
 
 
@@ -98,7 +99,11 @@ def wired(formation: Formation) -> Diagram:
     failing.fail(robots, carried)
     _talk(builder, phase, robots, formation, parameters, failing)
     if any("sensed" in _input_names(robot) for robot in robots):
-        _sense_nearest(builder, robots, parameters)
+        _sense_nearest(builder, robots, formation, parameters)
+    if any("visible" in _input_names(robot) for robot in robots):
+        obstacles, footprints, _ = parameters["line_of_sight"]
+        block = LineOfSight(obstacles, footprints, formation.obstacles.layout)
+        _sense(builder, robots, block, "line_of_sight", "visible")
     for i, robot in enumerate(robots):
         for output in (*ROBOT_OUTPUTS, ACCELERATION, DEMANDED, MEASURED):
             if output in ROBOT_OUTPUTS or robot.HasOutputPort(output):
@@ -120,8 +125,8 @@ def robot_diagram(formation: Formation, robot: int) -> Diagram:
 
     Returns:
         The robot, with the input ports that its blocks ask for, of ``phase``, ``reference``, ``spring_j``,
-        ``load``, ``channel_j`` and ``sensed``, and the output ports named in ``ROBOT_OUTPUTS``; ``ACCELERATION``
-        where its plant has it, ``DEMANDED`` and ``MEASURED`` where its parts are no wires.
+        ``load``, ``channel_j``, ``sensed`` and ``visible``, and the output ports named in ``ROBOT_OUTPUTS``;
+        ``ACCELERATION`` where its plant has it, ``DEMANDED`` and ``MEASURED`` where its parts are no wires.
 
     Raises:
         PartError: a part has not the ports that its role asks for.
@@ -311,18 +316,27 @@ def _talk(
 
 
 def _believed(robot: Diagram) -> OutputPort:
-    """What a robot takes for its own state, and sends."""
-    return robot.GetOutputPort(MEASURED if robot.HasOutputPort(MEASURED) else "state")
+    """What a robot takes for its state, and sends."""
+    port: OutputPort = robot.GetOutputPort(MEASURED if robot.HasOutputPort(MEASURED) else "state")
+    return port
 
 
-def _sense_nearest(builder: DiagramBuilder, robots: list[Diagram], parameters: Parameters) -> None:
-    centres, *margin = parameters["sensing"]
-    block = HoldingSensing(len(robots), centres, *margin) if margin else NearestSensing(len(robots), centres)
-    sensing = builder.AddNamedSystem("sensing", block)
+def _sense_nearest(
+    builder: DiagramBuilder, robots: list[Diagram], formation: Formation, parameters: Parameters
+) -> None:
+    obstacles, *margin = parameters["sensing"]
+    kind = HoldingSensing if margin else NearestSensing
+    block = kind(len(robots), obstacles, *margin, formation.obstacles.layout)
+    _sense(builder, robots, block, "sensing", "sensed")
+
+
+def _sense(builder: DiagramBuilder, robots: list[Diagram], block: System, name: str, port: str) -> None:
+    """Wire a block that tells every robot about the obstacles, from the states of all, to those that ask for it."""
+    sensing = builder.AddNamedSystem(name, block)
     for i, robot in enumerate(robots):
         builder.Connect(robot.GetOutputPort("state"), sensing.get_input_port(i))
-        if "sensed" in _input_names(robot):
-            builder.Connect(sensing.get_output_port(i), robot.GetInputPort("sensed"))
+        if port in _input_names(robot):
+            builder.Connect(sensing.get_output_port(i), robot.GetInputPort(port))
 
 
 def _observe_consensus(builder: DiagramBuilder, robots: Iterable[Diagram], parameters: Parameters) -> None:

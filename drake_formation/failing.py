@@ -40,7 +40,7 @@ class Failing:
         later = formation.stages[1:]
         tables = parameters[STAGES]
         self._signals = builder.AddNamedSystem(STAGES, StagedSignals(len(later), [*formation.signals], tables))
-        for k, stage in enumerate(later):
+        for k, stage in enumerate(later):  # as the hand-off, each a switch at which integrators stop
             switch = builder.AddNamedSystem(f"stage_{k + 1}", HandOff(stage.time))
             builder.Connect(switch.get_output_port(), self._signals.get_input_port(k))
         if DRIVEN in formation.signals:

@@ -54,6 +54,9 @@ def block_parameters(formation: Formation) -> Parameters:
     """The numeric parameters of every block of a formation's diagram; worked out once for a formation."""
     if "numbers" not in formation.kept:
         result: Parameters = {"consensus_error": (formation.slots,), "sensing": _sensing(formation)}
+        if any(getattr(part.config, "line_of_sight", False) for part in formation.parts["avoidance"]):
+            layout = np.array(formation.obstacles.layout, dtype=float)
+            result["line_of_sight"] = formation.obstacles.numbers, formation.footprints, layout
         result |= _failing(formation)
         for path, part, owner in placed_parts(formation):
             if groups := part.numbers(formation, owner):
@@ -64,10 +67,10 @@ def block_parameters(formation: Formation) -> Parameters:
 
 
 def _sensing(formation: Formation) -> tuple[Array, ...]:
-    """The obstacles' centres, and where robots hold on to what they sense by how much another must be nearer (m)."""
-    centres = formation.obstacles[:, :2]
+    """The obstacles, and where robots hold on to what they sense by how much another must be nearer (m)."""
+    obstacles = formation.obstacles.numbers
     margin = max(getattr(part, "margin", 0.0) for part in formation.parts["avoidance"])
-    return (centres, np.array([margin])) if margin else (centres,)
+    return (obstacles, np.array([margin])) if margin else (obstacles,)
 
 
 def _failing(formation: Formation) -> Parameters:

@@ -11,6 +11,7 @@ from typing import Any
 import networkx as nx
 from threadpoolctl import threadpool_limits
 
+from drake_formation.analysis.linear.assumptions import require_displacements
 from drake_formation.analysis.linear.errors import UNSOLVABLE, IllPosedError
 from drake_formation.analysis.linear.linearization import NOT_COVERED, LinearFormation, linearize
 from drake_formation.analysis.network.channel_verdict import ChannelVerdict
@@ -30,6 +31,7 @@ UNITS = {
     "P, lyapunov_decrease": "of the cost x'Px with x in m and m/s, in the units of Q and R",
     "laplacian_eigenvalue": "of the communication graph, a pure number",
     "loss_margin": "probability, from 0 to 1",
+    "smallest_eigenvalue": "of R'R, R the rigidity matrix with rows of length √2: a pure number",
 }
 """What the numbers of a certificate are measured in."""
 
@@ -237,6 +239,12 @@ def _channels(formation: LinearFormation, _: Questions) -> Any:
     return channel_certificate(formation)
 
 
+def _rigidity(formation: LinearFormation, _: Questions) -> Any:
+    from drake_formation.analysis.stability.held_shape import held_shape
+
+    return held_shape(formation.resolved)
+
+
 def _smallest_delta(formation: LinearFormation, asked: Questions) -> Any:
     from drake_formation.analysis.gains.position_gain import smallest_delta
 
@@ -286,6 +294,7 @@ def _design(formation: LinearFormation, asked: Questions) -> Any:
 
     if formation.robots < 2:
         raise IllPosedError("one robot has no consensus gains to choose")
+    require_displacements(formation.resolved, "advice on gains")
     if not nx.is_connected(formation.resolved.channels.graph):
         raise IllPosedError("the communication graph is not connected, so no gains make the robots agree (Lemma 1)")
     return design(formation, force_limit_n=asked.force_limit)
@@ -295,6 +304,7 @@ SECTIONS: dict[str, Callable[[LinearFormation, Questions], Any]] = {
     "channels": _channels,
     "local": _local,
     "springs": _springs,
+    "rigidity": _rigidity,
     "smallest_delta": _smallest_delta,
     "delay_neighbour": _delay_neighbour,
     "delay_relative": _delay_relative,

@@ -146,6 +146,13 @@ def _object(certificate: Certificate) -> Iterator[RenderableType]:
     )
 
 
+def _rigidity(certificate: Certificate) -> Iterator[RenderableType]:
+    shape = certificate.sections.get("rigidity")
+    if shape is None or certificate.formation.robots < 2:
+        return
+    yield from map(Text, shape.meaning())
+
+
 def _smallest_delta(certificate: Certificate) -> Iterator[RenderableType]:
     found = certificate.sections.get("smallest_delta")
     if found is None:
@@ -234,6 +241,7 @@ _BLOCKS: dict[str, Callable[[Certificate], Iterator[RenderableType]]] = {
     "Local loop (Theorem 1)": _local,
     "Modes of the formation (Theorem 2)": _modes,
     "Carried object": _object,
+    "Rigidity": _rigidity,
     "Smallest δ": _smallest_delta,
     "Communication": _communication,
     "Disturbances": _disturbance,

@@ -17,8 +17,17 @@ def reproduce(
     out: Annotated[
         Path, typer.Option(parser=path, metavar="FOLDER", help="For the report and the runs it is made of.")
     ] = Path("out/paper"),
+    topologies: Annotated[
+        bool,
+        typer.Option("--topologies", help="Instead, run every communication graph that the report speaks of."),
+    ] = False,
 ) -> None:
     """Rerun the paper's study and write a report: tables, figures and claims."""
+    if topologies and only:
+        stop("--only names parts of the report, which --topologies does not write; give one of them", WRONG_INPUT)
+    if topologies:
+        _topologies(out / "topologies")
+        return
     from drake_formation.paper.reproduce import reproduce as run_study
     from drake_formation.places import OutputError
     from drake_formation.simulation import SimulationError
@@ -33,3 +42,21 @@ def reproduce(
             stop(str(error), FAILED_RUN)
     where = f"Report in {written.folder / 'report.html'}, tables in {written.folder / 'tables.csv'}."
     say("\n".join([*written.remarks(), where]))
+
+
+def _topologies(folder: Path) -> None:
+    """Make the result that the report's section on bandwidth rests on, and compare it with the one that is kept."""
+    from drake_formation.paper.bandwidth.study import KEPT, largest_difference, run_study
+    from drake_formation.sweep import SweepError, SweepStoppedError
+
+    with runs_bar("topologies") as progress:
+        try:
+            found = run_study(folder, progress)
+        except SweepError as error:
+            stop(str(error), WRONG_INPUT)
+        except SweepStoppedError as error:
+            stop(str(error), FAILED_RUN)
+    say(
+        f"{len(found)} graphs tried, in {folder / KEPT}. Their errors differ from those that the report uses by at "
+        f"most {largest_difference(found):.1g} cm."
+    )

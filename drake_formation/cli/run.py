@@ -13,7 +13,7 @@ from rich.table import Table
 
 from drake_formation.cli.app import app
 from drake_formation.cli.options import ENGINES_HELP, EngineName, Overrides, Source, path
-from drake_formation.scenario import Scenario, load_scenario
+from drake_formation.scenario import Scenario, load_scenario, warnings
 from drake_formation.terminal import FAILED_RUN, WRONG_INPUT, say, stop
 
 if TYPE_CHECKING:
@@ -61,7 +61,8 @@ def run(
     say(_summary(result, figures, checked))
     remark = [str(result.attrs["remark"])] if "remark" in result.attrs else []
     where = f"Results in {written.folder}, pictures in {written.folder / PICTURES}."
-    say("\n".join([*map(str, events(result)), *remark, *written.remarks(), where]))
+    warned = [f"warning: {warning}" for warning in warnings(resolved)]
+    say("\n".join([*map(str, events(result)), *warned, *remark, *written.remarks(), where]))
 
 
 def _simulate_with_progress(scenario: Scenario, engine: EngineName) -> "xr.Dataset":

@@ -46,6 +46,9 @@ def _description(scenario: Scenario) -> Table:
         given = [_reads(key, its.description or "", getattr(written, key)) for key, its in fields.items()]
         kind = shown(getattr(written, role.chooser))
         table.add_row(".".join(map(str, role.section)), ": ".join(filter(None, [kind, ", ".join(given)])))
+    for failure in scenario.failures:
+        told = f"robot {failure.robot} {failure.kind} at {failure.time:g} s; the others {failure.response}"
+        table.add_row("failures", told)
     return table
 
 

@@ -9,12 +9,12 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle
 
 from drake_formation.compare.comparison import Comparison
 from drake_formation.compare.run import Outcome
 from drake_formation.compare.table import Row
 from drake_formation.scenario import resolve
+from drake_formation.viz.obstacles import OBSTACLE_COLOUR, grown
 from drake_formation.viz.style import draw_each
 
 ERROR, EFFORT = "consensus_error_m", "rms_force_n"
@@ -49,9 +49,12 @@ def paths(comparison: Comparison, outcomes: Sequence[Outcome]) -> Figure:
         for law, colour in law_colours(comparison).items():
             x, y = np.moveaxis(firsts[law].position[firsts[law].carried], -1, 0)
             axes.plot(x, y, color=colour, linewidth=1.0, alpha=0.8)
-        for ox, oy, radius in resolve(own[0].run.scenario).obstacles:
-            axes.plot([ox], [oy], "X", color="0.25", markersize=7)
-            axes.add_patch(Circle((ox, oy), radius, color="0.25", alpha=0.5))
+        formation = resolve(own[0].run.scenario)
+        for obstacle in formation.obstacles:
+            if len(obstacle.vertices) == 1 and not len(obstacle.motion):
+                axes.plot(*obstacle.vertices.T, "X", color=OBSTACLE_COLOUR, markersize=7)
+            outline = obstacle.outline(formation.hand_off)
+            axes.add_patch(grown(outline, obstacle.radius, color=OBSTACLE_COLOUR, alpha=0.5))
         axes.set(ylabel="y (m)")
         axes.set_aspect("equal")
         axes.margins(0.02, 0.1)

@@ -19,6 +19,10 @@ Velocity = Annotated[tuple[Coordinate, Coordinate], Field(strict=False)]
 Gap = Annotated[float, Field(ge=1e-3, le=1e6)]
 """A distance to keep (m). A planner takes steps in proportion to it, so it is no shorter than a millimetre."""
 
+Period = Annotated[float, Field(ge=1e-4, le=1e3)]
+"""A sampling period (s); in shorter ones a run would do nothing else than sample."""
+
+Probability = Annotated[float, Field(ge=0, le=1)]
 NonNegative = Annotated[float, Field(ge=0)]
 Positive = Annotated[float, Field(gt=0)]
 

@@ -9,9 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.formation.links import Channels, Edges
+from drake_formation.formation.obstacles import Obstacles
 from drake_formation.formation.stages import Signals, Stage, signals
 
 Array = NDArray[np.float64]
+
+ROUNDING = 1e-9
+"""Share of a number of periods that rounding may make of a whole number."""
 
 SPRINGS = "springs"
 """The kind of object that has no block: springs between robots, which their plants carry out."""
@@ -31,7 +35,8 @@ class Formation:
         goal: where the formation centre is carried to (m), shape (2,).
         springs: which robots the object couples, E edges; none where it is a body of its own.
         channels: which robots hear which, C channels with weights.
-        obstacles: x, y and radius of each (m), shape (M, 3).
+        obstacles: M of them.
+        footprints: radius of every robot about where it holds the object, 0 for a point (m), shape (N,).
         begin: when the scenario begins (s).
         aggregation_duration: how long the robots gather before the hand-off (s).
         transport_duration: how long they carry after it (s).
@@ -51,7 +56,8 @@ class Formation:
     goal: Array
     springs: Edges
     channels: Channels
-    obstacles: Array
+    obstacles: Obstacles
+    footprints: Array
     begin: float
     aggregation_duration: float
     transport_duration: float
@@ -62,7 +68,7 @@ class Formation:
     stages: tuple[Stage, ...] = ()
 
     def __post_init__(self) -> None:
-        for array in (self.slots, self.starts, self.centre, self.goal, self.obstacles):
+        for array in (self.slots, self.starts, self.centre, self.goal, self.footprints):
             array.setflags(write=False)
 
     @cached_property
@@ -101,6 +107,11 @@ class Formation:
         return float(np.linalg.norm(self.slots, axis=1).max())
 
     @cached_property
+    def extent(self) -> float:
+        """Radius of the circle about the formation centre that holds every robot in its slot (m)."""
+        return float((np.linalg.norm(self.slots, axis=1) + self.footprints).max())
+
+    @cached_property
     def masses(self) -> Array:
         """Mass of every robot m_i (kg), shape (N,)."""
         return np.array([part.config.mass for part in self.parts["robot"]])
@@ -135,6 +146,19 @@ class Formation:
     def at_rest_in_slots(self) -> bool:
         """Whether the object's springs are all at rest where the robots are in their slots."""
         return bool((self.elongations == 1.0).all())
+
+    @cached_property
+    def ticks(self) -> frozenset[tuple[float, float]]:
+        """Period and offset (s) of the updates of all parts."""
+        return frozenset(tick for parts in self.parts.values() for part in set(parts) for tick in part.ticks())
+
+    def is_updated(self, times: Array) -> NDArray[np.bool_]:
+        """Whether a part is updated at some times (s), of the same shape."""
+        result = np.zeros(np.shape(times), dtype=bool)
+        for period, offset in self.ticks:
+            periods = (np.asarray(times) - offset) / period
+            result |= (np.abs(periods - np.round(periods)) < ROUNDING * np.maximum(1.0, periods)) & (periods > -0.5)
+        return result
 
     def displacements(self, robot: int, others: tuple[int, ...]) -> Array:
         """Desired displacement h_i − h_j of a robot from some others (m), shape (others, 2)."""

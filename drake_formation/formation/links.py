@@ -125,6 +125,12 @@ class Channels:
         return nx.freeze(result)
 
     @cached_property
+    def counted(self) -> list[graphs.Edge]:
+        """Pairs (i, j) with i < j, ascending, of which one hears the other with a weight above 0."""
+        heard = self.pairs[self.weights > 0]
+        return sorted({(min(i, j), max(i, j)) for i, j in heard.tolist()})
+
+    @cached_property
     def agree(self) -> bool:
         """Whether consensus brings all robots to agree: some robot is heard, over others, by all (paper, Lemma 1)."""
         heard = nx.DiGraph()

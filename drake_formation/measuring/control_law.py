@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 from drake_formation.formation.formation import Formation
 from drake_formation.parameters import block_parameters, robot_name
 from drake_formation.parts.actuators.ideal import IdealActuator
+from drake_formation.parts.actuators.motor import MotorActuator
 from drake_formation.parts.avoidance.khatib import Khatib, avoidance_force
 from drake_formation.parts.computers.continuous import ContinuousComputer
 from drake_formation.parts.coordination.consensus import LAWS, Consensus
@@ -39,12 +41,12 @@ BLOCKS = ("tracking", "consensus", "avoidance")
 """The blocks of a robot whose forces add up to its control."""
 
 
-def control_law(formation: Formation, times: Array, recorded: Array) -> Law:
+def control_law(formation: Formation, times: Array, recorded: Array) -> "ControlLaw | StagedLaw | RecordedForces":
     """The control u of every robot during transport (paper, Eq. 8), as a function of time and state.
 
-    Where a robot has parts of other kinds, which may have states of their own, or where robots remember
-    what they sense or keep away from each other, it is read off what was recorded: on the straight line
-    between two samples.
+    Where a robot has parts of other kinds, which may have states of their own, where robots remember what they sense,
+    keep away from each other or have footprints, or where obstacles are no circles or move, it is read off what was
+    recorded.
 
     Args:
         formation: what ran.
@@ -53,15 +55,46 @@ def control_law(formation: Formation, times: Array, recorded: Array) -> Law:
     """
     known = all(isinstance(part, kinds) for role, kinds in KNOWN.items() for part in formation.parts[role])
     wired = all(getattr(channel, "is_wire", False) for channel in formation.parts["channel"])
-    if known and wired and not any(part.margin or part.config.robots for part in formation.parts["avoidance"]):
+    simple = known and wired and not formation.footprints.any() and formation.obstacles.are_circles
+    if simple and not any(map(_is_more, formation.parts["avoidance"])):
         return StagedLaw(formation) if formation.stages else ControlLaw(formation)
+    return RecordedForces(formation, times, recorded)
 
-    def between(at: Array, position: Array, _velocity: Array) -> Array:
-        columns = recorded.reshape(len(times), -1).T
-        read = [np.interp(at, times, column) for column in columns]
-        return np.stack(read, axis=-1).reshape(position.shape)
 
-    return between
+class RecordedForces:
+    """The control as it was recorded: in between on a straight line, but for jumps.
+
+    A sample at the time of an update shows the force until then, the first one that from then on. Where an actuator
+    does not smooth the force, a step that begins with an update has the force of its end throughout: all of it for
+    forces that are held, and up to what else changes within a step for others.
+
+    Args:
+        formation: what ran.
+        times: when it was recorded (s), rising, shape (m,).
+        recorded: the control forces then (N), shape (m, N, 2).
+    """
+
+    def __init__(self, formation: Formation, times: Array, recorded: Array) -> None:
+        rough = [not (isinstance(part, MotorActuator) and part.is_smooth) for part in formation.parts["actuator"]]
+        jumps = formation.is_updated(times[:-1])
+        jumps[:1] = False
+        self._times, self._ends = times, recorded[1:]
+        self.begins = np.where((jumps[:, None] & rough)[..., None], recorded[1:], recorded[:-1])
+
+    def __call__(self, times: Array, position: Array, _velocity: Array) -> Array:
+        """Control forces (N); see :data:`Law`."""
+        if not len(self._ends):
+            return np.zeros_like(position)
+        step = np.clip(np.searchsorted(self._times, times) - 1, 0, len(self._ends) - 1)
+        share = (times - self._times[step]) / (self._times[step + 1] - self._times[step])
+        force: Array = self.begins[step] + share[..., None, None] * (self._ends - self.begins)[step]
+        return force
+
+
+def _is_more(field: Part) -> bool:
+    """Whether a field around obstacles goes by more than where robots and obstacles are."""
+    config: Any = field.config
+    return bool(getattr(field, "margin", 0.0) or config.robots or config.line_of_sight)
 
 
 class ControlLaw:
@@ -89,7 +122,7 @@ class ControlLaw:
         ]
         self._consensus_gains = gains
         self._range, self._gain = np.array([group[0] for group in own["avoidance"]]).T
-        self._obstacles = formation.obstacles
+        self._obstacles = formation.obstacles.discs
         fields = formation.parts["avoidance"]
         self._masked = np.array([field.masked for field in fields])
         self._feels = np.array([field.feels(formation, i) for i, field in enumerate(fields)], dtype=float)

@@ -12,6 +12,7 @@ def energy(transport: Transport) -> float | None:
     times = transport["time"]
     if len(times) < 2:
         return None
-    force, velocity = transport["control_force"], transport["velocity"]
-    powers = [abs((u * v).sum(axis=-1)).sum(axis=-1) for u, v in ((force, velocity), transport.half_way)]
-    return float(np.diff(times) @ (powers[0][:-1] + 4 * powers[1] + powers[0][1:]) / 6)
+    velocity = transport["velocity"]
+    ends = (transport.step_begins, velocity[:-1]), (transport["control_force"][1:], velocity[1:])
+    begin, end, middle = (abs((u * v).sum(axis=-1)).sum(axis=-1) for u, v in (*ends, transport.half_way))
+    return float(np.diff(times) @ (begin + 4 * middle + end) / 6)

@@ -12,5 +12,5 @@ def peak_force(transport: Transport) -> float:
     robots, recorded = transport.robots, transport["control_force"]
     middle, _ = transport.half_way
     # Forces have no second derivatives to go by: a step's chord is taken to be left by twice what it is half-way.
-    bulge = length_of(recorded[:-1] - 2 * middle + recorded[1:])
+    bulge = length_of(transport.step_begins - 2 * middle + recorded[1:])
     return float(longest(Vectors(robots, transport.law, recorded, bulge))[0])

@@ -12,7 +12,7 @@ def rms_force(transport: Transport) -> float | None:
     times = transport["time"]
     if len(times) < 2:
         return None
-    ends, (middle, _) = transport["control_force"], transport.half_way
-    squares = [(force**2).sum(axis=-1).mean(axis=-1) for force in (ends[:-1], middle, ends[1:])]
+    begins, (middle, _), ends = transport.step_begins, transport.half_way, transport["control_force"][1:]
+    squares = [(force**2).sum(axis=-1).mean(axis=-1) for force in (begins, middle, ends)]
     mean = np.diff(times) @ (squares[0] + 4 * squares[1] + squares[2]) / 6 / (times[-1] - times[0])
     return float(np.sqrt(mean))

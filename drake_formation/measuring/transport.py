@@ -1,13 +1,13 @@
 """The transport phase of a run, as metrics look at it: between its samples too."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.formation.formation import Formation
-from drake_formation.measuring.control_law import Law, control_law
+from drake_formation.measuring.control_law import ControlLaw, RecordedForces, StagedLaw, control_law
 from drake_formation.scenario import resolve
 from drake_formation.simulation.motion import Motion
 from drake_formation.simulation.series import Series
@@ -43,8 +43,12 @@ class Transport:
 
     @cached_property
     def robots(self) -> Motion:
-        """The robots' motion."""
-        return self._motion("position", "velocity", "acceleration")
+        """The robots' motion; where forces jump with an update, so do accelerations."""
+        motion = self._motion("position", "velocity", "acceleration")
+        jumps = self.step_begins - self["control_force"][:-1]
+        if not jumps.any():
+            return motion
+        return replace(motion, leaving=motion.acceleration[:-1] + jumps / self.formation.masses[:, None])
 
     @cached_property
     def bulge(self) -> Array:
@@ -57,9 +61,15 @@ class Transport:
         return self._motion("deviation", "deviation_velocity", "deviation_acceleration")
 
     @cached_property
-    def law(self) -> Law:
+    def law(self) -> ControlLaw | StagedLaw | RecordedForces:
         """The control forces as a function of time and state."""
-        return control_law(self.formation, self.robots.times, self["control_force"])
+        return control_law(self.formation, self["time"], self["control_force"])
+
+    @cached_property
+    def step_begins(self) -> Array:
+        """Control forces (N) with which every step begins, shape (samples − 1, N, 2); it ends with those recorded."""
+        begins: Array = self.law.begins if isinstance(self.law, RecordedForces) else self["control_force"][:-1]
+        return begins
 
     @cached_property
     def half_way(self) -> tuple[Array, Array]:

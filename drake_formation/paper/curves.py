@@ -10,7 +10,8 @@ from drake_formation.measuring import metrics
 from drake_formation.paper.runs import AGGREGATION_GAINS, GAINS, MATERIALS, TOPOLOGIES, aggregation, topology, transport
 from drake_formation.paper.store import Store
 from drake_formation.vectors import length
-from drake_formation.viz.figures import draw_formation, draw_obstacles, robot_colours, snapshot_times
+from drake_formation.viz.figures import draw_formation, robot_colours, snapshot_times
+from drake_formation.viz.obstacles import draw_obstacles
 
 Array = NDArray[np.float64]
 
@@ -84,7 +85,7 @@ def draw_transport(axes: Axes, carried: xr.Dataset) -> None:
     for robot, colour in robot_colours(carried).items():
         x, y = carried["position"].sel(robot=robot).values.T
         axes.plot(x, y, color=colour, linewidth=1.2)
-    draw_obstacles(axes, carried)
+    draw_obstacles(axes, carried, snapshot_times(carried))
     for time in snapshot_times(carried):
         draw_formation(axes, carried.sel(time=time))
     axes.set(aspect="equal")

@@ -10,6 +10,8 @@ from matplotlib.figure import Figure
 from drake_formation.diagram import build_diagram
 from drake_formation.markdown import markdown_table
 from drake_formation.paper import curves, readings, schematics
+from drake_formation.paper.bandwidth import answer as bandwidth
+from drake_formation.paper.bandwidth.figure_23 import bandwidth_runs
 from drake_formation.paper.claims import CLAIMS, claim_runs
 from drake_formation.paper.fit import fit
 from drake_formation.paper.published import PROVENANCE
@@ -162,6 +164,14 @@ def _sensitivity(store: Store) -> Section:
     )
 
 
+def _bandwidth(store: Store) -> Section:
+    return Section(
+        title="What is the minimum bandwidth?",
+        text=bandwidth.answer(store),
+        pictures={"bandwidth": partial(_save, bandwidth.figure)},
+    )
+
+
 def _aggregations(formation: str) -> list[Scenario]:
     return [aggregation(formation, delta) for delta in AGGREGATION_GAINS]
 
@@ -258,6 +268,7 @@ def _parts() -> dict[str, Part]:
         "fit": Part(runs=_no_runs, make=_fit),
         "trajectories": Part(runs=trajectory_runs, make=_trajectories),
         "readings": Part(runs=readings.reading_runs, make=_readings),
+        "bandwidth": Part(runs=bandwidth_runs, make=_bandwidth),
         "sensitivity": Part(runs=sensitivity_runs, make=_sensitivity),
         **figures,
     }

@@ -90,6 +90,11 @@ class Part:
         """What of the formation, beyond its graphs, a new block is needed for when it changes; nothing by default."""
         return ()
 
+    def ticks(self) -> tuple[tuple[float, float], ...]:
+        """Period and offset (s) of the updates at which what it gives may jump; those of a field ``period``, if any."""
+        period = getattr(self.config, "period", None)
+        return () if period is None else ((float(period), 0.0),)
+
     def block(self, formation: Formation, owner: int, numbers: Numbers) -> System | None:
         """The block in double; it converts to AutoDiffXd and Expression.
 
@@ -105,11 +110,6 @@ class Part:
     def initial_state(self, formation: Formation, owner: int) -> Array | None:  # noqa: ARG002
         """The block's continuous state at the start; None where its default is right for every scenario."""
         return None
-
-    def period(self) -> float | None:
-        """How often the block's discrete state is updated (s), by which run times are estimated; None: never."""
-        configured: float | None = getattr(self.config, "period", None)
-        return configured
 
     def initial_discrete_state(self, formation: Formation, owner: int) -> Numbers | None:  # noqa: ARG002
         """The block's discrete state at the start, one array a group; None where its default is right for all."""
@@ -134,12 +134,12 @@ class BreakNumbers(Section):
 
     break_at_strain: Positive | None = Field(
         default=None,
-        description="largest |d/r − 1| (1) that the spring bears: beyond it, it breaks for good; one for all or one an "
-        "edge; default: any",
+        description="strain |d/r − 1| (1), longer or shorter, beyond which a spring breaks for good; one for all or "
+        "one an edge; default: none",
     )
     break_at_force: Positive | None = Field(
         default=None,
-        description="largest ‖F_ij‖ (N) that the spring bears, likewise; one for all or one an edge; default: any",
+        description="force ‖F_ij‖ (N) beyond which it does, likewise; one for all or one an edge; default: none",
     )
 
 

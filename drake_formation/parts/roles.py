@@ -38,6 +38,7 @@ PHASE = Port("phase", 1, "0 aggregation, 1 transport")
 OWN_STATE = Port("state", STATE, "the robot's state [q; v], as it takes it to be (m, m/s)")
 REFERENCE = Port("reference", 6, "motion of the formation centre [p; ṗ; p̈] (m, m/s, m/s²)")
 SENSED = Port("sensed", None, "for each obstacle 1 where no robot is nearer to it, else 0")
+VISIBLE = Port("visible", None, "for each obstacle 1 where nothing stands between, else 0")
 HEARD = Port("channel_j", STATE, "the state that robot j sends, for every robot heard (m, m/s)")
 HELD = Port("spring_j", STATE, "the state of robot j, for every robot that the object couples (m, m/s)")
 LOAD = Port("load", 2, "what an object that is a body of its own exerts on the robot (N)")
@@ -49,7 +50,7 @@ NOMINAL = Port("nominal", 2, "sum of the forces of the robot's controllers that 
 OBJECT = Port("spring_force", 2, "what the object exerts on the robot (N)")
 DEMANDED = Port("demanded", 2, "force asked of the robot's actuators (N)")
 APPLIED = Port("applied", 2, "force that the robot's actuators exert (N)")
-KNOWN = (OWN_STATE, REFERENCE, PHASE, HEARD, SENSED)
+KNOWN = (OWN_STATE, REFERENCE, PHASE, HEARD, SENSED, VISIBLE)
 """What any controller may ask for."""
 
 

@@ -1,14 +1,18 @@
 """What follows from a scenario's fields: slots, starting positions and graphs; for its checks and for resolving it."""
 
 import functools
+from typing import Any
 
 import networkx as nx
 import numpy as np
 from numpy.typing import NDArray
 
+from drake_formation.config.each import Owners
 from drake_formation.formation import graphs, shapes
 from drake_formation.formation.formation import SPRINGS
 from drake_formation.formation.links import Channels, Edges
+from drake_formation.formation.obstacles import Obstacle, Obstacles
+from drake_formation.scenario.obstacles import Circle, Segment
 from drake_formation.scenario.schema import (
     FormationStart,
     Grid,
@@ -21,6 +25,9 @@ from drake_formation.scenario.schema import (
 )
 
 Array = NDArray[np.float64]
+
+NEVER = 1e12
+"""When a motion without an end ends (s), later than any run."""
 
 
 def robot_count(shape: Shape) -> int:
@@ -120,7 +127,42 @@ def channels(scenario: Scenario) -> Channels:
     return Channels.of(robots, directed)
 
 
-def obstacles(scenario: Scenario) -> Array:
-    """Centre and radius of each obstacle (m), shape (obstacles, 3)."""
-    rows = [[*obstacle.position, obstacle.radius] for obstacle in scenario.avoidance.obstacles]
-    return np.array(rows, dtype=float).reshape(-1, 3)
+def footprints(scenario: Scenario) -> Array:
+    """Radius of every robot's footprint (m), shape (N,)."""
+    written, owners = scenario.robots.radius, Owners.robots(robot_count(scenario.formation))
+    radii = [owners.value(written, i, False, 0.0) for i in range(len(owners.names))]
+    return np.array(radii, dtype=float)
+
+
+def obstacles(scenario: Scenario) -> Obstacles:
+    """The obstacles, polygons counter-clockwise."""
+    return Obstacles(tuple(map(_obstacle, scenario.avoidance.obstacles)))
+
+
+def _obstacle(written: Any) -> Obstacle:
+    vertices = outline(written)
+    if len(vertices) > 2:
+        ahead = np.roll(vertices, -1, axis=0)
+        if (vertices[:, 0] * ahead[:, 1] - vertices[:, 1] * ahead[:, 0]).sum() < 0:
+            vertices = np.concatenate([vertices[:1], vertices[:0:-1]])  # waypoints are of the first corner
+    return Obstacle(vertices, written.radius, written.known, _motion(written))
+
+
+def outline(written: Any) -> Array:
+    """The vertices of an obstacle in the order in which they are written (m), shape (vertices, 2)."""
+    if isinstance(written, Circle):
+        return np.array([written.position], dtype=float)
+    return np.array(written.ends if isinstance(written, Segment) else written.vertices, dtype=float)
+
+
+def _motion(written: Any) -> Array:
+    """When each piece of an obstacle's motion begins and ends (s) and its velocity (m/s), shape (pieces, 4)."""
+    if written.velocity is not None:
+        return np.array([[written.start, NEVER, *written.velocity]])
+    pieces = []
+    begin, place = written.start, outline(written)[0]
+    for waypoint in written.waypoints:
+        next_place = np.array(waypoint.position, dtype=float)
+        pieces.append([begin, waypoint.time, *((next_place - place) / (waypoint.time - begin))])
+        begin, place = waypoint.time, next_place
+    return np.array(pieces, dtype=float).reshape(-1, 4)

@@ -100,7 +100,8 @@ def chooser(annotation: Any) -> str:
     bare, _ = _unwrapped(annotation)
     if isinstance(bare, PartOf):
         return bare.role.chooser
-    return next(key for key in CHOOSERS for branch in get_args(bare) if key in branch.model_fields)
+    sections = [_unwrapped(branch)[0] for branch in get_args(bare)]
+    return next(key for key in CHOOSERS for section in sections if key in section.model_fields)
 
 
 CHOOSERS = ("shape", "kind", "law")

@@ -13,7 +13,7 @@ from drake_formation.parts.part import Part
 from drake_formation.parts.registry import kinds
 from drake_formation.parts.roles import ROLES
 from drake_formation.scenario import derive
-from drake_formation.scenario.checks import failures, geometry, graphs, simulator
+from drake_formation.scenario.checks import failures, geometry, graphs, obstacles, simulator
 from drake_formation.scenario.owned import handed_out, path_of
 from drake_formation.scenario.schema import Scenario
 from drake_formation.scenario.source import Document
@@ -63,8 +63,8 @@ def check(scenario: Scenario) -> list[Fault]:
     Args:
         scenario: its single fields are valid, as pydantic leaves them.
     """
-    if faults := list(geometry.size(scenario)):
-        return faults  # without a number of robots nothing else can be said
+    if faults := [*geometry.size(scenario), *obstacles.check(scenario)]:
+        return faults  # without a number of robots, or with obstacles that are none, nothing else can be said
     places = list(geometry.check(scenario))
     links = list(graphs.check(scenario))
     failing = list(failures.check(scenario))
@@ -131,6 +131,7 @@ def _formation(
         springs=derive.spring_edges(scenario) if linked else Edges(robots, np.zeros((0, 2), dtype=np.int64)),
         channels=derive.channels(scenario) if linked else Channels.of(robots, []),
         obstacles=derive.obstacles(scenario),
+        footprints=derive.footprints(scenario),
         begin=scenario.simulator.start_time,
         aggregation_duration=scenario.aggregation.duration,
         transport_duration=scenario.transport.duration,

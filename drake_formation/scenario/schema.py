@@ -9,10 +9,12 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, SerializerFunctionWrapHandler, Tag, model_serializer
 
+from drake_formation.config.each import each
 from drake_formation.config.values import Edge, Graph, Length, NonNegative, Point, Positive, Section, TopologyName
 from drake_formation.formation.formation import SPRINGS
 from drake_formation.parts.registry import when_changed
 from drake_formation.scenario.failures import Failure
+from drake_formation.scenario.obstacles import Obstacle
 from drake_formation.scenario.written import PartOf, rebuild_sections
 
 MOST_ROBOTS = 1000
@@ -108,6 +110,10 @@ class Robots(Section):
     """The plants (paper, Eq. 3)."""
 
     start: Start = Field(description="starting positions: a list (m), {random: ...} or {centre: ...}")
+    radius: each(NonNegative) = Field(  # type: ignore[valid-type]
+        default=0.0,
+        description="radius of a robot's footprint (m), one for all or one a robot; paper: 0, a point",
+    )
 
 
 class Springs(Section):
@@ -153,13 +159,6 @@ class Consensus(Section):
     channel: Annotated[Any, PartOf("channel")] = Field(
         default_factory=PartOf("channel").default, description="what becomes of a state on its way; paper: ideal"
     )
-
-
-class Obstacle(Section):
-    """A round obstacle; at radius 0 a point, as in the paper."""
-
-    position: Point = Field(description="centre (m)")
-    radius: NonNegative = Field(default=0.0, le=1e6, description="radius (m)")
 
 
 class Avoidance(Section):

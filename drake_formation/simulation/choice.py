@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 
 from drake_formation.formation.formation import Formation
 from drake_formation.parameters import placed_parts
+from drake_formation.parts.actuators.motor import MotorActuator
 from drake_formation.parts.objects.breaking import looks_every
 from drake_formation.parts.objects.carried import CarriedObject
+from drake_formation.parts.part import Part
 from drake_formation.parts.tracking.lqr import Lqr, lqr_gain
 from drake_formation.scenario import Scenario, ScenarioError, resolve
 from drake_formation.simulation.phases import felt_obstacles
@@ -78,9 +80,11 @@ def blocks_seconds(scenario: Scenario) -> float:
 
 
 def _periods(formation: Formation) -> list[float]:
-    """How often the blocks that are sampled look (s), one of each."""
-    periods = [part.period() for _, part, _ in placed_parts(formation)]
-    return [period for period in periods if period]
+    """How often each sampled block is updated (s)."""
+    parts = [part for _, part, _ in placed_parts(formation)]
+    updated = [period for part in parts for period, _ in part.ticks()]
+    kept = [getattr(part, "keeps_every", 0.0) for part in parts]
+    return updated + [every for every in kept if every]
 
 
 def steps(scenario: Scenario, duration: float, *, carrying: bool) -> float:
@@ -95,7 +99,7 @@ def steps(scenario: Scenario, duration: float, *, carrying: bool) -> float:
     """
     settings = scenario.simulator
     looks = duration / looks_every(resolve(scenario)) if carrying else 0.0  # a step ends wherever one looks for breaks
-    looks += duration * max((1 / period for period in _periods(resolve(scenario))), default=0.0)
+    looks += duration * sum(1 / period for period in set(_periods(resolve(scenario))))
     if not settings.use_error_control:
         return duration / settings.max_step_size + looks
     stiffness, damping = _largest_rates(resolve(scenario), carrying)
@@ -124,9 +128,15 @@ def _largest_rates(formation: Formation, carrying: bool) -> tuple[float, float]:
     if carrying:
         stiffness += 2 * _sums(formation, "stiffness")
         damping += 2 * _sums(formation, "damping")
+    followed = [1 / part.given["time_constant"] for part in formation.parts["actuator"] if _follows(part)]
     (carried,) = formation.parts["object"]
     body = carried.fastest(formation) if carrying and isinstance(carried, CarriedObject) else (0.0, 0.0)
-    return float((stiffness / masses).max()) + body[0], float((damping / masses).max()) + body[1]
+    return float((stiffness / masses).max()) + body[0], max([float((damping / masses).max()) + body[1], *followed])
+
+
+def _follows(part: Part) -> bool:
+    """Whether actuators follow with a time constant."""
+    return isinstance(part, MotorActuator) and part.is_smooth
 
 
 def _each(formation: Formation, role: str, name: str) -> Array:

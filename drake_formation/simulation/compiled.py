@@ -59,6 +59,12 @@ def require_compiled_settings(scenario: Scenario, method: str = "dormand_prince"
         message = "the engine exponential cannot step over the jump in force where another robot becomes the nearest"
         allowed = "in_range, or the engine compiled or blocks, or an avoidance.margin above 0"
         faults.append(Fault(("avoidance", "sensing"), message, "nearest", allowed))
+    if method == "exponential" and felt_obstacles(formation):
+        for index, obstacle in enumerate(formation.obstacles):
+            if not obstacle.is_convex:
+                message = "the engine exponential cannot step over the jump in force between two edges of a notch"
+                allowed = "the engine compiled or blocks, or convex polygons next to each other"
+                faults.append(Fault(("avoidance", "obstacles", index), message, allowed=allowed))
     if faults:
         raise ScenarioError(faults)
 

@@ -68,11 +68,15 @@ class _Blocks:
         return bool(self._simulator.get_integrator().get_fixed_step_mode())
 
     def advance(self, end: float) -> None:
-        if not self._started:
-            self._simulator.Initialize()
-            self._started = True
+        self._start()
         self._simulator.AdvanceTo(end)
 
     def carry_out_updates(self) -> None:
+        self._start()
         self._simulator.AdvancePendingEvents()
         self.recording(self.context)
+
+    def _start(self) -> None:
+        if not self._started:
+            self._simulator.Initialize()
+            self._started = True

@@ -11,12 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.simulation.motion import Motion
-from drake_formation.vectors import least_length, length_of
+from drake_formation.vectors import from_segment, least_from_segment, least_length, length_of
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 Law = Callable[[Array, Array, Array], Array]
-Score = Callable[[Array, Array], Array]
+Score = Callable[[Array, Array | None], Array]
+ChordScore = Callable[[Array, Array, Array | None], Array]
 
 CUTS, FEW_CUTS = 32, 4
 """Parts into which a stretch is cut; few at first, which discard most stretches."""
@@ -38,12 +39,15 @@ class Vectors:
             vectors of that shape and (vectors, 2).
         samples: the vectors at the motion's samples, shape (samples, vectors, 2).
         bulge: how far each leaves the chord of each step at the most, shape (samples − 1, vectors).
+        extents: where the least length is asked for, of what distance: from segments from the origin to these, shape
+            (vectors, 2), or from the origin itself.
     """
 
     motion: Motion
     law: Law
     samples: Array
     bulge: Array
+    extents: Array | None = None
 
     @classmethod
     def of_positions(cls, motion: Motion, bulge: Array, law: Callable[[Array], Array] = lambda x: x) -> "Vectors":
@@ -74,14 +78,13 @@ class Vectors:
 
 def longest(vectors: Vectors, *, each: bool = False) -> Array:
     """The greatest length of any vector at any time, shape (1,); or of each, shape (vectors,)."""
-    nothing = np.zeros(vectors.samples.shape[1])
-    return _extreme(vectors, 1.0, nothing, lambda begin, end: np.maximum(length_of(begin), length_of(end)), each)
+    return _extreme(vectors, _length, _chord_length, np.zeros(vectors.samples.shape[1]), each)
 
 
 def shortest(vectors: Vectors, radii: Array | float = 0.0, *, each: bool = False) -> Array:
     """The same of the least length, after something is taken from it, shape (vectors,)."""
     less = np.broadcast_to(radii, vectors.samples.shape[1:2])
-    return -_extreme(vectors, -1.0, less, lambda begin, end: -_chord_distance(begin, end), each)
+    return -_extreme(vectors, _nearness, _chord_nearness, less, each)
 
 
 def last_beyond(vectors: Vectors, bound: float) -> tuple[int, float] | None:
@@ -134,20 +137,19 @@ def _last_share_beyond(
     return None
 
 
-def _extreme(vectors: Vectors, sign: float, more: Array, on_chord: Score, each: bool) -> Array:
+def _extreme(vectors: Vectors, score: Score, on_chord: ChordScore, more: Array, each: bool) -> Array:
     """The highest score of any vector or of each.
 
     Args:
         vectors: what to look at.
-        sign: the score of a vector is its length with this sign,
-        more: and this added, shape (vectors,).
+        score: of a vector, to which is added
+        more: of shape (vectors,).
         on_chord: the highest score, without what is added, on a straight line from a vector to another.
         each: of each.
     """
-    best: Array = (
-        (sign * length_of(vectors.samples) + more).max(axis=0 if each else None, keepdims=not each).reshape(-1)
-    )
-    reach = on_chord(vectors.samples[:-1], vectors.samples[1:]) + more + vectors.bulge
+    extents = vectors.extents
+    best: Array = (score(vectors.samples, extents) + more).max(axis=0 if each else None, keepdims=not each).reshape(-1)
+    reach = on_chord(vectors.samples[:-1], vectors.samples[1:], extents) + more + vectors.bulge
     step, vector = np.nonzero(reach > best + NEGLIGIBLE * (1 + abs(best)))
     low, high, bulge = np.zeros(len(step)), np.ones(len(step)), vectors.bulge[step, vector]
     for cuts in (FEW_CUTS, *[CUTS] * ROUNDS):
@@ -156,9 +158,10 @@ def _extreme(vectors: Vectors, sign: float, more: Array, on_chord: Score, each: 
         share = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, cuts + 1)
         row, place = np.arange(len(step)), vector * each
         values = _values(vectors, step, vector, share)
-        parts = on_chord(values[:, :-1], values[:, 1:]) + more[vector, None]
+        own = None if extents is None else extents[vector, None]
+        parts = on_chord(values[:, :-1], values[:, 1:], own) + more[vector, None]
         chosen, highest, rest = parts.argmax(axis=1), parts.max(axis=1), bulge / cuts**2
-        known = np.maximum((sign * length_of(values)).max(axis=1) + more[vector], highest - rest)
+        known = np.maximum(score(values, own).max(axis=1) + more[vector], highest - rest)
         np.maximum.at(best, place, known)
         if cuts == CUTS:  # a few are too few to tell where in its step a vector is at its extreme
             low, high = share[row, np.maximum(chosen - 1, 0)], share[row, np.minimum(chosen + 2, cuts)]
@@ -176,6 +179,18 @@ def _values(vectors: Vectors, step: Indices, vector: Indices, share: Array) -> A
     return vectors.within(step, share)[np.arange(len(step)), :, vector]
 
 
-def _chord_distance(begin: Array, end: Array) -> Array:
-    """Least length on the straight line from a vector to another."""
-    return least_length(begin, end - begin)
+def _length(values: Array, _extent: Array | None) -> Array:
+    return length_of(values)
+
+
+def _chord_length(begin: Array, end: Array, _extent: Array | None) -> Array:
+    return np.maximum(length_of(begin), length_of(end))
+
+
+def _nearness(values: Array, extent: Array | None) -> Array:
+    return -length_of(values if extent is None else from_segment(values, extent))
+
+
+def _chord_nearness(begin: Array, end: Array, extent: Array | None) -> Array:
+    way = end - begin
+    return -(least_length(begin, way) if extent is None else least_from_segment(begin, way, extent))

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from drake_formation.scenario import resolve
 from drake_formation.scenario.failures import DROPS, FREEZES, STOPS
 from drake_formation.scenario.stages import noticed, out
+from drake_formation.simulation.collisions import collisions
 from drake_formation.simulation.events import HAND_OFF, Event
 from drake_formation.simulation.series import Series
 
@@ -73,7 +74,13 @@ def _broken(series: Series, name: str) -> Iterator[tuple[int, float, NDArray[np.
         yield int(k), float(times[k]), series["position"][np.searchsorted(series["time"], times[k])]
 
 
-FINDERS: tuple[Finder, ...] = (hand_offs, breaks, failures)
+def contacts(series: Series) -> Iterator[Event]:
+    """Footprints that touch an obstacle or each other."""
+    with np.errstate(over="ignore", invalid="ignore"):  # a run that diverged may end in numbers whose squares overflow
+        yield from collisions(series)
+
+
+FINDERS: tuple[Finder, ...] = (hand_offs, breaks, failures, contacts)
 """All there are; each looks for one kind."""
 
 

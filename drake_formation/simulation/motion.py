@@ -27,13 +27,16 @@ class Motion:
         times: sample times (s), rising, shape (samples,).
         position: (m), shape (samples, points, 2).
         velocity: (m/s), of the same shape.
-        acceleration: (m/s²), of the same shape; where it jumps, the value from there on.
+        acceleration: (m/s²), of the same shape; where it jumps, the value from there on, unless ``leaving`` is given.
+        leaving: acceleration with which every step begins (m/s²), shape (samples − 1, points, 2), where it jumps at
+            samples that show the value until then.
     """
 
     times: Array
     position: Array
     velocity: Array
     acceleration: Array
+    leaving: Array | None = None
 
     def at(self, step: Indices, share: Array) -> tuple[Array, Array, Array]:
         """Position, velocity and acceleration of all points within steps.
@@ -60,6 +63,17 @@ class Motion:
         position, velocity, acceleration = self.at(step, share[:, None])
         return position[:, 0], velocity[:, 0], acceleration[:, 0]
 
+    def with_samples_at(self, times: Array) -> "Motion":
+        """The same motion with samples at further times too, as far as it goes on then (s)."""
+        inside = times[(times > self.times[0]) & (times < self.times[-1])]
+        more = np.setdiff1d(inside, self.times)
+        if not len(more):
+            return self
+        order = np.argsort(np.concatenate([self.times, more]), kind="stable")
+        own = (self.position, self.velocity, self.acceleration)
+        joined = [np.concatenate(pair)[order] for pair in zip(own, self.at_times(more), strict=True)]
+        return Motion(np.concatenate([self.times, more])[order], *joined)
+
     def bulge(self) -> Array:
         """How far each point leaves the chord of each step at the most (m), shape (samples − 1, points).
 
@@ -77,8 +91,8 @@ class Motion:
         """Of the quintics over the share of a step, in rising powers (m), each of shape (m, points, 2)."""
         after = slice(1, None) if isinstance(step, slice) else step + 1
         length = np.diff(self.times)[step][:, None, None]
-        position = self.position[step]
-        slope, curvature = length * self.velocity[step], length**2 * self.acceleration[step]
+        position, leaving = self.position[step], self.acceleration if self.leaving is None else self.leaving
+        slope, curvature = length * self.velocity[step], length**2 * leaving[step]
         # What the parabola that leaves as the quintic does lacks at the end; what rounding leaves of it is no motion,
         # though over a step of a picosecond it would be a great speed.
         way = self.position[after] - position - slope - 0.5 * curvature

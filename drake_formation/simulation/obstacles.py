@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from drake_formation.scenario import Scenario, resolve
 from drake_formation.simulation.recorder import Recording
-from drake_formation.vectors import least_length, length_of
+from drake_formation.vectors import least_from_segment, least_length, length_of
 
 Array = NDArray[np.float64]
 
@@ -51,10 +51,10 @@ class Hit:
 
 
 def first_hit(scenario: Scenario, recording: Recording) -> Hit | None:
-    """The first sample of the transport in which a robot is inside an obstacle, or None."""
+    """The first sample of the transport in which a robot, without its footprint, is inside an obstacle, or None."""
     obstacles, position = resolve(scenario).obstacles, recording.series("state")[..., :2]
     with np.errstate(over="ignore"):
-        clearance = length_of(position[:, :, None] - obstacles[:, :2]) - obstacles[:, 2]
+        clearance = obstacles.clearance(position, recording.times[:, None])
     hits = np.argwhere((clearance <= 0.0) & (recording.phases == 1)[:, None, None])
     if not len(hits):
         return None
@@ -76,16 +76,22 @@ def worst_leap(scenario: Scenario, recording: Recording) -> Leap | None:
     steps = np.append(np.diff(times), scenario.simulator.max_step_size)
     position = state[..., :2]
     move = steps[:, None, None] * state[..., 2:]
-    with np.errstate(over="ignore"):
-        length, moved = length_of(move), np.zeros(move.shape[:-1])
-        moved[:-1] = length_of(np.diff(position, axis=0))  # more where the step went through an obstacle
+    lengths = _lengths(position, move)
     transport = (recording.phases == 1)[:, None]
     worst = None
     formation = resolve(scenario)
     ranges = np.array([getattr(part.config, "range", 0.0) for part in formation.parts["avoidance"]])
-    for number, (x, y, radius) in enumerate(formation.obstacles, start=1):
-        reach = radius + ranges
-        near = _least_distance(position - [x, y], move) < reach
+    for number, obstacle in enumerate(formation.obstacles, start=1):
+        reach = obstacle.radius + ranges
+        if formation.footprints.any():
+            reach = reach + formation.footprints
+        place, way, (length, moved) = position, move, lengths
+        if len(obstacle.motion):
+            drift = obstacle.displacement(np.append(times, times[-1] + steps[-1]))[:, None]
+            place, way = position - drift[:-1], move - np.diff(drift, axis=0)
+            length, moved = _lengths(place, way)
+        edges = zip(*obstacle.edges(), strict=True)
+        near = np.logical_or.reduce([_least_distance(place - begin, way, extent) < reach for begin, extent in edges])
         for sample, robot in np.argwhere(transport & near & (np.maximum(length, moved) > SHARE * reach)):
             own = SHARE * reach[robot]
             shorter = own / max(length[sample, robot], 2.0 * own)
@@ -120,7 +126,15 @@ def chattering(scenario: Scenario, clearance: Array) -> str:
     )
 
 
-def _least_distance(offset: Array, move: Array) -> Array:
-    """How near the way from an offset along a move comes to the origin (m), shape (..., N)."""
+def _lengths(position: Array, move: Array) -> tuple[Array, Array]:
+    """How long the moves ahead are and how long those were that came (m), two of shape (samples, N)."""
+    with np.errstate(over="ignore"):
+        length, moved = length_of(move), np.zeros(move.shape[:-1])
+        moved[:-1] = length_of(np.diff(position, axis=0))  # more where the step went through an obstacle
+    return length, moved
+
+
+def _least_distance(offset: Array, move: Array, extent: Array) -> Array:
+    """How near the way from an offset along a move comes to a segment from the origin (m), shape (..., N)."""
     with np.errstate(over="ignore", invalid="ignore"):  # a run that diverged may end in numbers whose squares overflow
-        return least_length(offset, move)
+        return least_from_segment(offset, move, extent) if extent.any() else least_length(offset, move)

@@ -2,8 +2,6 @@
 
 from collections.abc import Callable
 
-import numpy as np
-
 from drake_formation.formation.formation import Formation
 from drake_formation.scenario import Scenario, resolve
 
@@ -30,4 +28,4 @@ def felt_obstacles(formation: Formation) -> bool:
 
 def without_obstacles(formation: Formation) -> Formation:
     """The formation with all obstacles out of reach; its structure is the same."""
-    return formation.changed(obstacles=formation.obstacles + np.array([FAR_AWAY, FAR_AWAY, 0.0]))
+    return formation.changed(obstacles=formation.obstacles.shifted([FAR_AWAY, FAR_AWAY]))

@@ -35,12 +35,12 @@ VARIABLES = {
     "spring_force": (VECTOR, "N", "what the object exerts on a robot"),
     "spring_length": (("time", "spring"), "m", "length d of a spring"),
     "rest_length": (("spring",), "m", "length r of a spring at rest"),
-    "clearance": (("time", "robot", "obstacle"), "m", "distance to an obstacle"),
+    "clearance": (("time", "robot", "obstacle"), "m", "distance to an obstacle, from the robot's footprint"),
     "phase": (("time",), "1", "0 aggregation, 1 transport"),
     "slot": (("robot", "axis"), "m", "slot h relative to the formation centre"),
     "goal": (("axis",), "m", "formation centre to reach"),
     "aggregation_centre": (("axis",), "m", "formation centre to gather about"),
-    "obstacle_position": (("obstacle", "axis"), "m", "centre of an obstacle"),
+    "obstacle_position": (("obstacle", "axis"), "m", "middle of an obstacle before it moves"),
     "obstacle_radius": (("obstacle",), "m", "radius of an obstacle"),
 }
 """Dimensions, unit and meaning of each variable."""
@@ -53,9 +53,12 @@ SOMETIMES = {
     "object_pose": (("time", "pose"), "m, m, rad, m/s, m/s, rad/s", "place and heading of the object and their rates"),
     "object_strain": (("time",), "1", "strain of the object"),
     "traffic": (("time", "channel", "count"), "1, and s", "packets so far, and when the one in use was sent"),
+    "obstacle_outline": (("time", "obstacle", "vertex", "axis"), "m", "vertices of an obstacle"),
+    "robot_radius": (("robot",), "m", "radius of a robot's footprint"),
 }
 """Those there are where the computer or actuators of a robot, or its sensors, are no wires, where the object is a
-body of its own, and where channels carry packets."""
+body of its own, where channels carry packets, where obstacles are no circles or move, and where robots have
+footprints."""
 
 FAILING_VARIABLES = {
     "driven": (("time", "robot"), "1", "1 while the drives of a robot work, else 0"),
@@ -79,6 +82,7 @@ def labelled_result(series: Series) -> "xr.Dataset":
         actuators of any are no wires, ``demanded_force`` is what is asked of the actuators. Where sensors are none,
         ``measured_position`` and ``measured_velocity`` are what robots take for their own and send; all else is true.
         An object that is a body of its own has ``object_pose`` over ``pose``, and ``object_strain``, as its kind says.
+        Obstacles that are no circles or move have ``obstacle_outline`` over ``vertex``.
         Channels that carry packets have ``traffic`` over ``channel`` (what robot 2 tells robot 1 is ``2-1``) and
         ``count``.
         ``deviation`` is NaN before the hand-off. A sample at the hand-off shows what is so from then on. Between

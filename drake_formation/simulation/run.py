@@ -157,9 +157,9 @@ class PreparedRun:
         run = self._start(scenario, context, progress and (lambda time: progress(time - begin)))
         try:
             _advance(run, formation, hand_off)
+            at_hand_off = run.context.Clone() if felt_obstacles(formation) else None
             # Carry out the hand-off now, so that the first sample of the transport has its forces.
             run.carry_out_updates()
-            at_hand_off = run.context.Clone() if felt_obstacles(formation) else None
             _advance(run, formation, end)
         except _FAILURES as failure:
             if felt_obstacles(formation) and len(run.recording.times):
@@ -178,6 +178,7 @@ class PreparedRun:
             scenario, at_hand_off, progress and (lambda time: progress(end - begin + time - hand_off))
         )
         try:
+            nominal.carry_out_updates()
             _advance(nominal, formation, end)
         except _FAILURES as failure:
             raise self._simulation_error(

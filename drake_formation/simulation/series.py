@@ -62,7 +62,7 @@ def time_series(scenario: Scenario, choice: Choice, run: Recording, nominal: Rec
         motion = recorded_motion(scenario, run)
         position = motion.position
         lengths = length_of(position[:, first] - position[:, second])
-        clearance = length_of(position[:, :, None] - obstacles[:, :2]) - obstacles[:, 2]
+        clearance = obstacles.clearance(position, run.times[:, None]) - formation.footprints[:, None]
         deviation = _deviation(scenario, motion, run, nominal)
     arrays = {
         "time": run.times,
@@ -84,9 +84,13 @@ def time_series(scenario: Scenario, choice: Choice, run: Recording, nominal: Rec
         "slot": slots,
         "goal": formation.goal,
         "aggregation_centre": formation.centre,
-        "obstacle_position": obstacles[:, :2],
-        "obstacle_radius": obstacles[:, 2],
+        "obstacle_position": obstacles.middles,
+        "obstacle_radius": obstacles.radii,
     }
+    if not obstacles.are_circles:
+        arrays["obstacle_outline"] = obstacles.outlines(run.times)
+    if formation.footprints.any():
+        arrays["robot_radius"] = formation.footprints
     if run.has(DEMANDED):
         arrays["demanded_force"] = run.series(DEMANDED)
     if run.has(MEASURED):

@@ -85,6 +85,15 @@ def at_most(x: Scalar, bound: Scalar) -> Scalar:
     return 1.0 if x <= bound else 0.0
 
 
+def chosen(x: Scalar, bound: Scalar, within: Scalar, beyond: Scalar) -> Scalar:
+    """One value where x ≤ bound and another elsewhere, of any scalars alike or arrays of floats."""
+    if isinstance(x, np.ndarray):
+        return np.where(x <= bound, within, beyond)
+    if isinstance(x, Expression) or isinstance(bound, Expression):
+        return symbolic.if_then_else(x <= bound, within, beyond)
+    return within if x <= bound else beyond
+
+
 def row_at(x: Scalar, bounds: list[Scalar], rows: list[list[Scalar]]) -> list[Scalar]:
     """The row of the last bound that x has reached, or the first row before all bounds, of any scalar.
 

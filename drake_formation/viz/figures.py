@@ -9,11 +9,11 @@ from matplotlib.patches import Circle
 
 from drake_formation.vectors import length
 from drake_formation.viz.events import draw_events, mark_events
+from drake_formation.viz.obstacles import draw_obstacles
 
 SNAPSHOTS = 7
 """Formation snapshots drawn along the way, hand-off and end included."""
 
-OBSTACLE_COLOUR = "0.25"
 SPRING_COLOUR = "0.6"
 
 
@@ -28,7 +28,7 @@ def paths(result: xr.Dataset) -> Figure:
         axes.plot(x[~carried], y[~carried], color=colour, linewidth=0.9, linestyle=":")
         axes.plot(x[:1], y[:1], "s", color=colour, markersize=4.5)
         axes.plot(x[carried], y[carried], color=colour, linewidth=1.4, label=f"robot {robot}")
-    draw_obstacles(axes, result)
+    draw_obstacles(axes, result, snapshot_times(result))
     draw_events(axes, result)
     for time in snapshot_times(result):
         draw_formation(axes, result.sel(time=time))
@@ -176,20 +176,6 @@ def _fit_to_plane(figure: Figure, axes: Axes) -> None:
     figure.set_size_inches(width, min(max(height, 3.0), width))
 
 
-def draw_obstacles(axes: Axes, result: xr.Dataset) -> None:
-    """Draw a result's obstacles and their sensing range in the plane."""
-    reach = float(result.attrs["sensing_range_m"])
-    for k, obstacle in enumerate(result["obstacle"].values):
-        x, y = result["obstacle_position"].sel(obstacle=obstacle).values
-        radius = float(result["obstacle_radius"].sel(obstacle=obstacle))
-        axes.plot([x], [y], "X", color=OBSTACLE_COLOUR, markersize=7, label=None if k else "obstacle")
-        axes.add_patch(Circle((x, y), radius, color=OBSTACLE_COLOUR, alpha=0.5))
-        if reach:
-            sensed = Circle((x, y), radius + reach, fill=False, linestyle="--", edgecolor="0.5")
-            sensed.set_label("" if k else "sensing range")
-            axes.add_patch(sensed)
-
-
 def draw_formation(axes: Axes, moment: xr.Dataset) -> None:
     """Draw robots, and the springs that hold them, in the plane at one time of a result."""
     acting = moment["spring"].values[moment["acting"].values == 1] if "acting" in moment else moment["spring"].values
@@ -200,6 +186,9 @@ def draw_formation(axes: Axes, moment: xr.Dataset) -> None:
     for robot, colour in robot_colours(moment).items():
         x, y = moment["position"].sel(robot=robot).values
         axes.plot([x], [y], "o", color=colour, markersize=4.5, markeredgecolor="white", markeredgewidth=0.5)
+        if "robot_radius" in moment:
+            radius = float(moment["robot_radius"].sel(robot=robot))
+            axes.add_patch(Circle((x, y), radius, color=colour, alpha=0.2, linewidth=0))
 
 
 def _title(result: xr.Dataset, subject: str) -> str:

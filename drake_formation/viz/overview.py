@@ -5,17 +5,20 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from drake_formation.vectors import length
 from drake_formation.viz.events import draw_events
 from drake_formation.viz.figures import (
     draw_formation,
     draw_history,
-    draw_obstacles,
     mark_transport,
     robot_colours,
     snapshot_times,
 )
+from drake_formation.viz.obstacles import draw_obstacles
+
+Array = NDArray[np.float64]
 
 FRESHEST, OLDEST = 1e-3, 10.0
 """Ages of information (s) between which colours tell apart."""
@@ -47,7 +50,9 @@ def overview(result: xr.Dataset) -> Figure:
 def _bounds(result: xr.Dataset) -> tuple[float, float, float, float]:
     """What the paths' picture shows (m): left, right, bottom, top."""
     places = result["position"].where(result["phase"] == 1).values.reshape(-1, 2)
-    places = np.concatenate([places[np.isfinite(places).all(axis=1)], result["obstacle_position"].values])
+    outlines = result["obstacle_outline"].values.reshape(-1, 2) if "obstacle_outline" in result else np.zeros((0, 2))
+    places = np.concatenate([places, result["obstacle_position"].values, outlines])
+    places = places[np.isfinite(places).all(axis=1)]
     (left, bottom), (right, top) = places.min(axis=0) - MARGIN, places.max(axis=0) + MARGIN
     return float(left), float(right), float(bottom), float(top)
 
@@ -62,7 +67,7 @@ def _draw_paths(axes: Axes, result: xr.Dataset) -> None:
     for robot, colour in robot_colours(result).items():
         x, y = carried["position"].sel(robot=robot).values.T
         axes.plot(x, y, color=colour, linewidth=1.2, label=f"robot {robot}")
-    draw_obstacles(axes, result)
+    draw_obstacles(axes, result, snapshot_times(result))
     draw_events(axes, result)
     for time in snapshot_times(result):
         draw_formation(axes, result.sel(time=time))
@@ -81,11 +86,12 @@ def _draw_error(axes: Axes, result: xr.Dataset) -> None:
     mark_transport(axes, result, only=True)
 
 
-def ages(result: xr.Dataset, times: np.ndarray) -> np.ndarray:
+def ages(result: xr.Dataset, times: Array) -> Array:
     """How old what is known over each channel is (s), shape (channels, times)."""
     known = result["traffic"].sel(count="sent_at").values
     later = np.minimum(np.searchsorted(result["time"].values, times), len(known) - 1)
-    return (times[:, None] - known[later]).T
+    found: Array = (times[:, None] - known[later]).T
+    return found
 
 
 def _draw_ages(figure: Figure, axes: Axes, result: xr.Dataset) -> None:

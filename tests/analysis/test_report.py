@@ -91,6 +91,13 @@ def test_many_modes_are_summed_up_by_kind():
     assert int(count[1]) > MOST_ROWS
 
 
+def test_what_channels_hold_by_distances_is_said():
+    text = printed("quadrilateral", **{"consensus.graph": "cycle"})
+    assert "Over the channels: 4 distances of rank 4, 1 change of shape free." in text
+    assert "Along the object's springs: 6 distances of rank 5, rigid, 1 more than needed" in text
+    assert "Robots compare distances" not in text
+
+
 @pytest.mark.parametrize("width", [60, 100])
 def test_a_narrow_terminal_gets_the_whole_verdict(width):
     assert "after 34.77 s" in printed("line", width=width)

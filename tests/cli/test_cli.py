@@ -168,6 +168,12 @@ def test_reproduce_names_the_nearest_part(cli):
     assert "did you mean 'table3'" in err
 
 
+def test_reproduce_writes_a_report_or_tries_topologies(cli):
+    status, _, err = cli("reproduce", "--only", "table3", "--topologies")
+    assert status == 2
+    assert "give one of them" in err
+
+
 def test_parts_are_listed_with_their_packages(cli):
     status, out, _ = cli("parts")
     assert status == 0
@@ -180,3 +186,21 @@ def test_validate_shows_each_robots_own_values(cli):
     assert status == 0
     assert "50.0" in out
     assert "hookean" in out
+
+
+def test_run_and_validate_warn_of_a_failure_that_never_comes(cli):
+    late = ("--set", "failures=[{robot: 1, time: 500, kind: freezes}]")
+    for command in (("run", "line", *SHORT, *late, "--out", "o"), ("validate", "line", *SHORT, *late)):
+        status, out, _ = cli(*command)
+        assert status == 0
+        assert "warning: failures.0.time: the scenario ends at" in out
+        assert "the robot never fails" in out
+
+
+def test_events_of_a_run_are_told_and_written(cli):
+    fails = "failures=[{robot: 1, time: 2.0, kind: stops_actuating}]"
+    status, out, _ = cli("run", "line", *SHORT, "--set", fails, "--out", "o")
+    assert status == 0
+    told = json.loads(Path("o/metrics.json").read_text())["events"]
+    assert [event["kind"] for event in told] == ["hand_off", "failure"]
+    assert "robot 1 stops actuating" in out

@@ -83,7 +83,7 @@ def test_a_case_changes_what_a_law_has_put_in_place(written):
     )
     run = load_comparison(written(text)).runs[-1]
     assert resolve(run.scenario).parts["avoidance"][0].kind == "rotational"
-    assert resolve(run.scenario).obstacles[:, :2].tolist() == [[9.0, 9.0]]
+    assert resolve(run.scenario).obstacles.discs[:, :2].tolist() == [[9.0, 9.0]]
 
 
 def test_channels_count_where_they_are_read(small):

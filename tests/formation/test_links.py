@@ -70,3 +70,8 @@ def test_nothing_can_be_written_to(channels):
     for array in (channels.pairs, channels.weights):
         with pytest.raises(ValueError, match="read-only"):
             array[...] = 0
+
+
+def test_channels_count_once_and_with_a_weight():
+    channels = Channels.of(4, [(1, 0, 1.0), (0, 1, 0.5), (2, 3, 2.0), (3, 1, 0.0)])
+    assert channels.counted == [(0, 1), (2, 3)]

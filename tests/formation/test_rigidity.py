@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drake_formation.formation import graphs, shapes
-from drake_formation.formation.rigidity import rigid_rank, rigidity_matrix, rigidity_rank
+from drake_formation.formation.rigidity import rigid_rank, rigidity, rigidity_matrix, rigidity_rank
 
 TRUSS = [(0, 1), (1, 2), (2, 3), (0, 3), (0, 2)]
 
@@ -46,3 +46,24 @@ def test_a_long_braced_beam_is_rigid():
     braces = [(i, i + 101) for i in range(99)]
     assert rigidity_rank(slots, beam + braces) == rigid_rank(200)
     assert rigidity_rank(slots, beam + braces[1:]) == rigid_rank(200) - 1
+
+
+@given(st.integers(3, 8), st.integers(0, 2**32 - 1))
+def test_what_rigidity_says_is_what_the_matrix_does(robots, seed):
+    rng = np.random.default_rng(seed)
+    slots = rng.uniform(-1, 1, (robots, 2))
+    edges = graphs.edges(nx.gnm_random_graph(robots, int(rng.integers(1, robots * (robots - 1) // 2 + 1)), seed=seed))
+    found, matrix = rigidity(slots, edges), rigidity_matrix(slots, edges).toarray()
+    assert found.rank == np.linalg.matrix_rank(matrix, tol=1e-6) <= found.generic_rank
+    assert found.rigid == (found.mechanisms == 0) == (found.softest > 0)
+    if found.rigid:
+        values = np.linalg.svd(matrix, compute_uv=False)
+        assert found.softest == pytest.approx(values[found.needed - 1] ** 2)
+        assert found.edges >= found.needed
+
+
+def test_two_robots_are_held_by_their_distance_and_one_by_none():
+    pair = rigidity(shapes.line(2, 1.0, 0.0), [(0, 1)])
+    assert pair.minimally_rigid
+    assert pair.softest == pytest.approx(2.0)
+    assert rigidity(np.zeros((1, 2)), []).rigid

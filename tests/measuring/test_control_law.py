@@ -6,6 +6,7 @@ from strategies import generators, random_state, scenarios
 
 from drake_formation import build_diagram, load_scenario, simulate, with_overrides
 from drake_formation.measuring.control_law import ControlLaw, StagedLaw, control_law
+from drake_formation.parts import Part
 from drake_formation.scenario import resolve
 
 
@@ -74,7 +75,7 @@ def test_only_the_robot_nearest_to_an_obstacle_is_pushed_where_only_that_senses_
 
 def test_parts_of_other_kinds_are_read_off_what_was_recorded():
     formation = resolve(load_scenario("line"))
-    other = formation.changed(parts={**formation.parts, "tracking": (object(), object())})
+    other = formation.changed(parts={**formation.parts, "tracking": (Part(None), Part(None))})
     times, recorded = np.array([0.0, 1.0]), np.arange(8.0).reshape(2, 2, 2)
     law = control_law(other, times, recorded)
     np.testing.assert_array_equal(

@@ -49,6 +49,64 @@ def changed(matrix, row, column, value):
     return copy
 
 
+SQUARE = [[4.0, 0.0], [5.0, 0.0], [5.0, 1.0], [4.0, 1.0]]
+
+
+def shaped(**obstacle):
+    return {"avoidance__obstacles": [obstacle]}
+
+
+@pytest.mark.parametrize(
+    ("changes", "fault"),
+    [
+        (shaped(kind="segment", ends=[[4, 4], [4, 4]]), "avoidance.obstacles.0.ends.1: a segment's ends are in one"),
+        (
+            shaped(kind="polygon", vertices=[*SQUARE, SQUARE[0]]),
+            "avoidance.obstacles.0.vertices.0: two corners in a row are in one place",
+        ),
+        (
+            shaped(kind="polygon", vertices=[SQUARE[k] for k in (0, 2, 1, 3)]),
+            "avoidance.obstacles.0.vertices: the polygon's edges cross or touch at [4.5, 0.5]",
+        ),
+        (
+            shaped(kind="polygon", vertices=[[4, 4], [6, 4], [5, 4]]),
+            "avoidance.obstacles.0.vertices: the polygon's edges cross or touch",
+        ),
+        (
+            shaped(position=[4, 4], velocity=[1, 0], waypoints=[{"time": 1, "position": [5, 4]}]),
+            "avoidance.obstacles.0.waypoints: both velocity and waypoints are given; allowed: one of them",
+        ),
+        (
+            shaped(position=[4, 4], start=2, waypoints=[{"time": 2, "position": [5, 4]}]),
+            "avoidance.obstacles.0.waypoints.0.time: no later than start, 2 s (got 2.0)",
+        ),
+        (
+            shaped(kind="polygon", vertices=[[-1, 0.5], [1, 0.5], [1, 1.5], [-1, 1.5]]),
+            "robots.start.1: robot 2 starts inside obstacle 1",
+        ),
+        (
+            shaped(kind="segment", ends=[[9, 0.1], [11, 0.1]], radius=0.2),
+            "transport.goal: robot 2's slot at the goal is inside obstacle 1 (got [10.0, 0.0]); allowed: more than "
+            "0.2 m from [[9.0, 0.1], [11.0, 0.1]]",
+        ),
+        (
+            shaped(position=[4, 0], velocity=[0.1, 0.0]) | {"transport__duration": 60.0},
+            "transport.goal: robot 2's slot at the goal is inside obstacle 1 (got [10.0, 0.0]); allowed: more than "
+            "0 m from [4.0, 0.0], which moves",
+        ),
+        (
+            shaped(position=[0, -0.5], radius=0.3) | {"robots__radius": [0.3, 0.2, 0.2]},
+            "robots.start.0: robot 1 starts inside obstacle 1 (got [0.0, 0.0]); allowed: more than 0.6 m from [0.0, "
+            "-0.5]",
+        ),
+        ({"robots__radius": 0.5}, "robots.radius: robots 1 and 2 touch in their slots (got 0.5)"),
+        ({"robots__radius": [0.1, 0.2]}, "robots.radius: 2 values for 3 robots"),
+    ],
+)
+def test_faults_of_shapes_and_footprints(changes, fault):
+    assert any(found.startswith(fault) for found in faults_of(**changes)), faults_of(**changes)
+
+
 def test_a_sound_scenario_has_no_faults():
     assert faults_of() == []
 

@@ -57,7 +57,7 @@ def test_being_resolved_is_not_seen_from_outside():
 
 def test_no_array_can_be_written_to():
     formation = resolve(LINE)
-    for array in (formation.slots, formation.starts, formation.centre, formation.goal, formation.obstacles):
+    for array in (formation.slots, formation.starts, formation.centre, formation.goal, formation.footprints):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 1.0
 

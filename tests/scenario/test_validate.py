@@ -107,7 +107,7 @@ def test_a_scenario_needs_no_more_than_this():
             "",
             "",
             "avoidance:\n  obstacles:\n    - [6, 5]",
-            "f.yaml:12: avoidance.obstacles.0: not allowed (got [6, 5]); allowed: a mapping {position, radius}",
+            "f.yaml:12: avoidance.obstacles.0: not allowed (got [6, 5]); allowed: a mapping {position, radius, ",
         ),
         ("name: test", "name: ../test", "", 'f.yaml:1: name: not a valid name (got "../test")'),
     ],

@@ -2,6 +2,8 @@ import numpy as np
 import pytest
 
 from drake_formation import load_scenario, metrics, simulate
+from drake_formation.formation.obstacles import Obstacle, Obstacles
+from drake_formation.scenario import with_overrides
 from drake_formation.simulation.clearance import contact, least_clearance
 from drake_formation.simulation.motion import Motion
 from drake_formation.simulation.result import series_of
@@ -17,13 +19,26 @@ def passing(miss):
 @pytest.mark.parametrize("miss", [0.05, 0.25])
 def test_the_least_clearance_may_lie_between_samples(miss):
     motion = passing(miss)
-    centres, radii = np.array([[9.0, 9.0], [0.0, 0.0]]), np.array([0.5, 0.1])
-    assert least_clearance(motion, motion.bulge(), centres, radii) == pytest.approx(miss - 0.1, abs=1e-9)
+    obstacles = Obstacles.circles([[9.0, 9.0, 0.5], [0.0, 0.0, 0.1]])
+    assert least_clearance(motion, motion.bulge(), obstacles, np.zeros(1)) == pytest.approx(miss - 0.1, abs=1e-9)
+    assert least_clearance(motion, motion.bulge(), obstacles, np.array([0.02])) == pytest.approx(miss - 0.12, abs=1e-9)
+
+
+@pytest.mark.parametrize("moving", [False, True])
+def test_the_least_clearance_from_other_shapes_may_lie_between_samples(moving):
+    """A wedge whose corner the robot passes; and the same one moved there and away again within the step."""
+    wedge = np.array([[0.2, -1.0], [0.2, -0.1], [0.1, -1.0]])
+    drift = np.array([[0.0, 0.02, 0.0, 5.0], [0.02, 0.04, 0.0, -5.0]]) if moving else np.zeros((0, 4))
+    motion = passing(0.05)
+    obstacles = Obstacles((Obstacle(wedge, 0.01, motion=drift), Obstacle(np.array([[5.0, 5.0], [6.0, 5.0]]))))
+    times = np.linspace(0.0, 0.1, 100_001)
+    dense = obstacles.clearance(motion.at_times(times)[0][:, 0], times).min()
+    assert least_clearance(motion, motion.bulge(), obstacles, np.zeros(1)) == pytest.approx(dense, abs=1e-6)
 
 
 def test_without_obstacles_there_is_no_clearance():
     motion = passing(1.0)
-    assert least_clearance(motion, motion.bulge(), np.zeros((0, 2)), np.zeros(0)) is None
+    assert least_clearance(motion, motion.bulge(), Obstacles(), np.zeros(1)) is None
 
 
 LEAP = {"aggregation.duration": 0.0, "robots.start": [[0.0, 3.0], [0.0, 4.0]], "transport.goal": [10.0, 3.5]}
@@ -47,10 +62,10 @@ def test_no_step_leads_over_an_obstacle(engine):
 def test_a_robot_that_is_inside_between_two_samples_alone_is_found():
     series = series_of(simulate(load_scenario("line", overrides=LEAP | {"transport.duration": 2.0})))
     assert contact(series) is None
-    passed = np.array([[0.5 * (series["position"][0, 0, 0] + series["position"][1, 0, 0]), 3.0]])
-    middle = series | {"obstacle_position": passed, "obstacle_radius": np.array([1e-9])}
-    middle["clearance"] = np.linalg.norm(series["position"][:, :, None] - passed, axis=-1) - 1e-9
-    found = contact(Series(middle, series.scenario, series.choice))
+    passed = [0.5 * (series["position"][0, 0, 0] + series["position"][1, 0, 0]), 3.0]
+    in_the_way = with_overrides(series.scenario, {"avoidance.obstacles": [{"position": passed, "radius": 1e-9}]})
+    middle = series | {"clearance": np.linalg.norm(series["position"][:, :, None] - [passed], axis=-1) - 1e-9}
+    found = contact(Series(middle, in_the_way, series.choice))
     assert found is not None
     assert found[1:] == (0, 0)
 

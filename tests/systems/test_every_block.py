@@ -11,13 +11,17 @@ from drake_formation.parts.actuators.motor import Motor
 from drake_formation.parts.avoidance.barrier import BarrierFilter
 from drake_formation.parts.avoidance.khatib import ObstacleAvoidance
 from drake_formation.parts.avoidance.rotational import rotational_force
+from drake_formation.parts.computers.sampled import DelayedHold
 from drake_formation.parts.coordination.consensus import ConsensusController
-from drake_formation.parts.objects.breaking import Breaking, SpringsBear
+from drake_formation.parts.objects.bearing import SpringsBear
+from drake_formation.parts.objects.breaking import Breaking
 from drake_formation.parts.references.set_point import SetPoint
 from drake_formation.parts.robots.omnidirectional import Omnidirectional
 from drake_formation.parts.robots.plant import PlanarRobot
 from drake_formation.parts.robots.point_mass import RobotPlant, dragged_mass
 from drake_formation.parts.robots.unicycle import Unicycle
+from drake_formation.parts.sensors.kalman import KalmanSensor
+from drake_formation.parts.sensors.noisy import BiasedSensor, NoisySensor
 from drake_formation.parts.springs.hookean import Hookean
 from drake_formation.parts.springs.linear import Linear
 from drake_formation.parts.tracking.controller import TrackingController
@@ -30,6 +34,7 @@ from drake_formation.systems.sensing import NearestSensing
 from drake_formation.systems.staged_signals import StagedSignals
 
 SPRINGS = [[10.0, 2.0, 0.5, -1.0], [20.0, 3.0, 1.0, 1.0]]
+SHAPES = [1.0, 1.0, 2.0, 1.0, 2.0, 2.0, 1.2, 1.6, 0.1, -1.0, 0.5, -1.0, -0.5, 0.0, 0.0, 9.0, 0.1, 0.2]
 OBSTACLES = [[0.5, 0.5, 0.0], [-1.0, 0.5, 0.2], [40.0, 0.0, 0.0]]
 
 
@@ -63,16 +68,23 @@ MAKERS = {
     ),
     "motors at once": lambda: Motor(("dead_zone", "max_force"), [0.1, 0.3]),
     "slow motors": lambda: Motor(("dead_zone", "max_force", "time_constant", "max_rate"), [0.1, 0.3, 0.2, 0.5]),
+    "biased sensor": lambda: BiasedSensor([0.1, 0.2, 0.3, 0.4]),
+    "noisy sensor": lambda: NoisySensor(0.1, [0.1, 0.2, 0.3], [0.1, 0.2, 0.3, 0.4], np.ones(4), np.arange(1.0, 11.0)),
+    "Kalman filter": lambda: KalmanSensor(0.1, True, [0.1, 40.0, 0.3, 0.4], np.ones(4), [0.0], np.arange(1.0, 5.0)),
+    "delayed hold": lambda: DelayedHold(0.1, 0.0, 2),
     "consensus": lambda: ConsensusController([2, 5], [100.0, 7.0], [[1.0, 0.0], [0.0, -1.0]]),
     "consensus without channels": lambda: ConsensusController([], [100.0, 7.0], np.zeros((0, 2))),
     "avoidance": lambda: ObstacleAvoidance([2.0, 30.0], OBSTACLES),
     "masked avoidance": lambda: ObstacleAvoidance([2.0, 30.0], OBSTACLES, masked=True),
     "avoidance without obstacles": lambda: ObstacleAvoidance([2.0, 30.0], np.zeros((0, 3))),
     "rotational avoidance": lambda: ObstacleAvoidance([2.0, 0.8, 0.6, 30.0], OBSTACLES, False, rotational_force),
+    "avoidance of shapes": lambda: ObstacleAvoidance(
+        [2.0, 30.0], SHAPES, masked=True, footprints=[0.1], layout=((4, 0), (2, 1)), sighted=True
+    ),
     "barrier": lambda: BarrierFilter([40.0, 0.3, 2.0, 20.0], OBSTACLES),
     "barrier without obstacles": lambda: BarrierFilter([40.0, 0.3, 2.0, 20.0], np.zeros((0, 3))),
-    "sensing": lambda: NearestSensing(3, [[1.0, 1.0], [-1.0, 0.5]]),
-    "sensing without obstacles": lambda: NearestSensing(2, np.zeros((0, 2))),
+    "sensing": lambda: NearestSensing(3, [[1.0, 1.0, 0.0], [-1.0, 0.5, 0.2]]),
+    "sensing without obstacles": lambda: NearestSensing(2, np.zeros((0, 3))),
     "consensus error": lambda: ConsensusError([[0.0, 0.5], [0.5, -0.5], [-0.5, -0.5]]),
     "set point": lambda: SetPoint([2.5, 3.5], [25.0, 3.5]),
     "hand-off": lambda: HandOff(3.0),
@@ -96,7 +108,10 @@ SILENT = {
 }  # fmt: skip
 """Outputs and the inputs that do not reach them at once. All others do, in every block."""
 
-REMEMBERED = {("force", "demanded"), ("force", "applied"), ("error", "demanded"), ("error", "applied")}
+REMEMBERED = {
+    ("force", "demanded"), ("force", "applied"), ("error", "demanded"), ("error", "applied"),
+    ("measured", "true"), ("measured", "demanded"), ("demanded", "asked"),
+}  # fmt: skip
 """Likewise of blocks with a state that they change."""
 
 
@@ -114,7 +129,8 @@ def outputs(block):
 
 
 def test_inputs_reach_exactly_the_outputs_that_depend_on_them(block):
-    silent = SILENT | (REMEMBERED if block.num_continuous_states() else set())
+    states = block.num_continuous_states() + block.num_discrete_state_groups()
+    silent = SILENT | (REMEMBERED if states else set())
     for given in inputs(block):
         for output in outputs(block):
             names = output.get_name(), given.get_name().split("_")[0]

@@ -28,7 +28,7 @@ def test_it_is_handed_over_only_to_one_that_is_nearer_by_the_margin(apart, margi
 
 
 def test_the_block_carries_out_the_law_for_every_obstacle():
-    block = HoldingSensing(2, [[0.0, 0.0], [4.0, 0.0]], [0.5])
+    block = HoldingSensing(2, [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0]], [0.5])
     context = block.CreateDefaultContext()
 
     def seen(first, second):

@@ -23,7 +23,7 @@ def test_a_single_robot_sees_everything():
 @given(st.integers(1, 5), st.integers(0, 3), generators)
 def test_the_block_gives_each_obstacle_to_its_nearest_robot(robots, obstacles, rng):
     states, centres = rng.uniform(-5, 5, (robots, 4)), rng.uniform(-5, 5, (obstacles, 2))
-    block = NearestSensing(robots, centres)
+    block = NearestSensing(robots, np.column_stack([centres, np.zeros(obstacles)]))
     context = block.CreateDefaultContext()
     for i, state in enumerate(states):
         block.GetInputPort(f"state_{i + 1}").FixValue(context, state)

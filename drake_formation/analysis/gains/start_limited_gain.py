@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.analysis.gains.force_limited_gain import bisected, require_question
-from drake_formation.analysis.linear.assumptions import require_start_at_rest
+from drake_formation.analysis.linear.assumptions import require_displacements, require_start_at_rest
 from drake_formation.analysis.linear.control_gains import ControlGains, control_gains
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.analysis.linear.linearization import STATES, LinearFormation, linearize
@@ -73,7 +73,8 @@ def start_force(
 
     Raises:
         ScenarioError: the scenario is wrong.
-        IllPosedError: its reference is a trajectory, its loop is unstable, or a robot does not start at rest.
+        IllPosedError: its reference is a trajectory, its loop is unstable, a robot does not start at rest, or robots
+            compare distances.
     """
     own = resolve(scenario)
     kind = own.parts["reference"][0].kind
@@ -84,6 +85,7 @@ def start_force(
         )
     require_start_at_rest(own)
     formation = formation or linearize(scenario)
+    require_displacements(formation.resolved, "the force of a start")
     delta = formation.delta if delta is None else delta
     outputs = (forces or control_gains(formation)).at(delta, formation.delta_v)
     gathering = _without_springs(formation)

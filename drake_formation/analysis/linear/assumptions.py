@@ -11,8 +11,8 @@ from drake_formation.parts.roles import ROLES, WIRES
 from drake_formation.parts.tracking.lqr import Lqr
 
 
-def require_linear_consensus(formation: Formation) -> None:
-    """Linear consensus with one δ and δ_v for all robots, over channels that weigh alike both ways.
+def require_consensus(formation: Formation) -> None:
+    """Consensus with one law, δ and δ_v for all robots, over channels that weigh alike both ways.
 
     Raises:
         IllPosedError: it is another law, or differs between robots or directions.
@@ -20,13 +20,28 @@ def require_linear_consensus(formation: Formation) -> None:
     for i, part in enumerate(formation.parts["coordination"]):
         if not isinstance(part, Consensus):
             raise IllPosedError(f"robot {i + 1} coordinates by {part.kind!r}; what is certified is consensus")
-        if part.config.law != "linear":
-            raise IllPosedError(f"robot {i + 1} has consensus.law {part.config.law!r}; what is certified is 'linear'")
+    if len({part.config.law for part in formation.parts["coordination"]}) > 1:
+        raise IllPosedError("robots have different consensus.law; what is certified is one for all")
     gains = {(part.config.delta, part.config.delta_v) for part in formation.parts["coordination"]}
     if len(gains) > 1:
         raise IllPosedError("robots have different consensus.delta or delta_v; what is certified is one for all")
     if not formation.channels.undirected:
         raise IllPosedError("channels go one way or weigh differently each way; what is certified goes both ways alike")
+
+
+def require_displacements(formation: Formation, what: str) -> None:
+    """Consensus that compares displacements (paper, Eq. 15).
+
+    Args:
+        formation: with consensus.
+        what: what there is no answer to otherwise, such as "advice on gains".
+
+    Raises:
+        IllPosedError: it compares distances.
+    """
+    law = formation.parts["coordination"][0].config.law
+    if law != "linear":
+        raise IllPosedError(f"consensus.law is {law!r}, on distances; {what} is for 'linear', on displacements")
 
 
 def require_springs(formation: Formation) -> None:

@@ -15,8 +15,8 @@ from pydrake.systems.framework import Context, Diagram
 from pydrake.systems.primitives import Linearize
 
 from drake_formation.analysis.linear.assumptions import (
+    require_consensus,
     require_free_masses,
-    require_linear_consensus,
     require_springs,
     require_wires,
 )
@@ -37,7 +37,8 @@ STATES = 4
 
 NOT_COVERED = (
     "avoidance: every number is for a formation outside the sensing range of all obstacles",
-    "large displacements: springs are linearized about the formation at rest; a rotated formation has other ones",
+    "large displacements: springs, and consensus on distances, are linearized about the formation at rest; a rotated "
+    "formation has other ones",
     "saturation: forces are taken as unlimited",
     "the hand-off: the object is in place",
     "failures and breaks: no robot has failed, and every spring holds",
@@ -127,7 +128,7 @@ def linearize(scenario: Scenario) -> LinearFormation:
     formation = resolve(rest)
     require_springs(formation)
     require_free_masses(formation)
-    require_linear_consensus(formation)
+    require_consensus(formation)
     require_wires(formation)
     diagram = build_diagram(rest)
     _require_states(diagram, formation)

@@ -14,13 +14,11 @@ import numpy as np
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.analysis.linear.linearization import Array, LinearFormation, linearize
 from drake_formation.analysis.linear.motion_subspaces import ROUNDING, rotation, spring_stiffness
-from drake_formation.formation.graphs import Edge
-from drake_formation.formation.rigidity import rigidity_rank
+from drake_formation.analysis.stability.held_shape import stiff_springs
+from drake_formation.formation.rigidity import rigid_rank, rigidity_rank
 from drake_formation.parts.springs.hookean import Hookean
 from drake_formation.parts.springs.linear import Linear
 from drake_formation.scenario import Scenario, with_overrides
-
-TRANSLATIONS = 2
 
 
 @dataclass(frozen=True)
@@ -88,7 +86,7 @@ def spring_linearization(formation: LinearFormation) -> SpringLinearization:
         raise IllPosedError(
             f"the object's springs act by {formation.resolved.law.kind!r}; what is compared are the paper's two laws"
         )
-    stiff = stiff_springs(formation)
+    stiff = stiff_springs(formation.resolved)
     if not stiff:
         raise IllPosedError("the object has no springs with stiffness: give springs.graph edges and springs.stiffness")
     slots = formation.resolved.slots
@@ -99,7 +97,7 @@ def spring_linearization(formation: LinearFormation) -> SpringLinearization:
         law=formation.resolved.law.kind,
         springs=len(stiff),
         rank=rank,
-        mechanisms=2 * formation.robots - TRANSLATIONS - 1 - rank,
+        mechanisms=rigid_rank(formation.robots) - rank,
         exact=exact,
         linear=linear,
         exact_free=_nullity(exact),
@@ -107,13 +105,6 @@ def spring_linearization(formation: LinearFormation) -> SpringLinearization:
         exact_rotation=_along(turning, exact),
         linear_rotation=_along(turning, linear),
     )
-
-
-def stiff_springs(formation: LinearFormation) -> list[Edge]:
-    """The springs that have stiffness, robots numbered from 0."""
-    edges = formation.resolved.springs.pairs.tolist()
-    stiffness = formation.resolved.field("spring", "stiffness")
-    return [edge for edge, k in zip(edges, stiffness, strict=True) if k > 0]
 
 
 def _nullity(stiffness: Array) -> int:

@@ -5,6 +5,7 @@ from functools import cached_property
 import networkx as nx
 import numpy as np
 
+from drake_formation.analysis.linear.assumptions import require_displacements
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.analysis.linear.linearization import LinearFormation
 from drake_formation.analysis.response.error_criteria import Measure
@@ -36,12 +37,13 @@ class GraphStudy:
         words: what they are.
 
     Raises:
-        IllPosedError: there is one robot only.
+        IllPosedError: there is one robot only, or robots compare distances.
     """
 
     def __init__(self, formation: LinearFormation, measure: Measure, exhaustive: int) -> None:
         if formation.robots < 2:
             raise IllPosedError("one robot has nobody to talk with: a communication graph takes at least two robots")
+        require_displacements(formation.resolved, "the search for channels")
         self.measure = measure
         self.complete = with_all_channels(formation)
         self.least_error = least_error(self.complete, measure)

@@ -179,6 +179,11 @@ class MotorActuator(Part):
         values = dict(zip(FEATURES, (config.dead_zone, config.max_force, lag, config.max_rate), strict=True))
         return {name: value for name, value in values.items() if value}
 
+    @property
+    def is_smooth(self) -> bool:
+        """Whether the force never jumps."""
+        return "time_constant" in self.given
+
     def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:  # noqa: ARG002
         """Whether there is a force between the dead zone and the largest."""
         width, largest = self.config.dead_zone, self.config.max_force

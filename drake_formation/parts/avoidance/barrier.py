@@ -14,6 +14,7 @@ from drake_formation.formation.formation import Formation
 from drake_formation.parts.avoidance.barrier_function import barrier_force, smooth_barrier
 from drake_formation.parts.part import Numbers, Part
 from drake_formation.parts.registry import part
+from drake_formation.systems.outlines import ROUND
 from drake_formation.systems.templates import block_template, in_double
 
 
@@ -74,6 +75,12 @@ def BarrierFilter_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
 BarrierFilter = in_double(BarrierFilter_)
 
 
+def _discs(formation: Formation, owner: int) -> NDArray[np.float64]:
+    """Centre of each obstacle, and its radius and that of the robot's footprint together (m), shape (M, 3)."""
+    discs: NDArray[np.float64] = formation.obstacles.discs + np.array([0.0, 0.0, formation.footprints[owner]])
+    return discs
+
+
 @part("avoidance", kind="barrier")
 class Barrier(Part):
     """A control barrier function that keeps a clearance from all obstacles, whatever else acts on the robot.
@@ -103,11 +110,19 @@ class Barrier(Part):
             if value := getattr(robot, name, None):
                 message = f"the barrier takes robot {owner + 1} for a mass that its forces alone move, without limit"
                 yield Fault(("..", "robots", name), message, shown(value), "not given, or another avoidance.kind")
-        if not len(formation.obstacles) or (formation.robots > 1 and not formation.slots.any()):
+        for index, obstacle in enumerate(formation.obstacles):
+            if obstacle.layout != ROUND:
+                message = "the barrier keeps its clearance from circles at rest alone"
+                yield Fault(
+                    ("obstacles", index), message, allowed="circles that do not move, or another avoidance.kind"
+                )
+        if not len(formation.obstacles) or not formation.obstacles.are_circles:
+            return
+        if formation.robots > 1 and not formation.slots.any():
             return  # slots that coincide are told of already
         start = formation.starts[owner]
         place = formation.centre + formation.slots[owner] if formation.aggregation_duration else start
-        config, discs = self.config, formation.obstacles.tolist()
+        config, discs = self.config, _discs(formation, owner).tolist()
         spare, _, _ = smooth_barrier(
             tuple(place.tolist()), (0.0, 0.0), discs, config.clearance, config.rate, config.sharpness
         )
@@ -122,7 +137,7 @@ class Barrier(Part):
         field: NDArray[np.float64] = np.array(
             [formation.masses[owner], config.clearance, config.rate, config.sharpness]
         )
-        return field, formation.obstacles
+        return field, _discs(formation, owner)
 
     def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:  # noqa: ARG002
         """The filter."""

@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field
 
 from drake_formation.formation.formation import Formation
-from drake_formation.parts.avoidance.khatib import ObstacleAvoidance, avoidance_force
+from drake_formation.parts.avoidance.khatib import avoidance_force, field_block
 from drake_formation.parts.avoidance.sensed_field import FieldConfig, SensedField
 from drake_formation.parts.part import Numbers
 from drake_formation.parts.registry import part
@@ -55,13 +55,11 @@ class Rotational(SensedField):
         )
 
     def numbers(self, formation: Formation, owner: int) -> Numbers:
-        """The field's range, direction and gain, and the obstacles."""
+        """The field's range, direction and gain, the obstacles, and what it knows of robots."""
         angle = np.deg2rad(self.config.angle)
         field = np.array([self.config.range, np.cos(angle), np.sin(angle), self.config.gain])
-        return field, self.felt(formation, owner), *self.spacing()
+        return field, self.felt(formation, owner).numbers, *self.of_robots(formation, owner)
 
     def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:
         """The controller."""
-        field, obstacles, *spacing = numbers
-        others = self.neighbours(formation, owner)
-        return ObstacleAvoidance(field, obstacles, self.masked, rotational_force, others, *spacing)
+        return field_block(self, formation, owner, numbers, rotational_force)

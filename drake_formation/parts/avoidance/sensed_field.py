@@ -10,6 +10,7 @@ from pydantic import Field
 from drake_formation.config.errors import Fault, shown
 from drake_formation.config.values import Length, NonNegative, Section
 from drake_formation.formation.formation import Formation
+from drake_formation.formation.obstacles import Obstacles
 from drake_formation.parts.part import Numbers, Part
 
 Robots = Annotated[tuple[int, ...], Field(strict=False)]
@@ -37,11 +38,18 @@ class FieldConfig(Section):
         default=(), description="with sensing assigned, for each obstacle the number of the robot that feels it"
     )
     robots: bool = Field(
-        default=False, description="keep away, in both phases, from the robots heard as from points, within the spacing"
+        default=False,
+        description="keep away, in both phases, from the robots heard, as from points or their footprints, within the "
+        "spacing",
     )
     spacing: Length = Field(
         default=0.5,
-        description="range ρ_r (m) of the field around other robots, below the slots' distances",
+        description="range ρ_r (m) of the field around other robots, below the slots' distances less the footprints",
+    )
+    line_of_sight: bool = Field(
+        default=False,
+        description="feel an obstacle only where no other robot's footprint and no other obstacle stands between, "
+        "looked at every 0.05 s",
     )
 
 
@@ -52,13 +60,17 @@ class SensedField(Part):
         """Whether assignments, margin and spacing suit the formation."""
         if self.config.sensing == "assigned":
             yield from self._assignment_faults(formation)
+            if self.config.line_of_sight:
+                message = "who feels an obstacle is assigned, whether it is seen or not"
+                yield Fault(("line_of_sight",), message, "true", "false, or another avoidance.sensing")
         margins = {part.margin for part in formation.parts["avoidance"] if getattr(part, "masked", False)}
         if self.masked and len(margins) > 1:
             values = shown(sorted(margins))
             yield Fault(("margin",), "robots that compare distances have different margins", values, "one for all")
 
         for other in self.neighbours(formation, owner):
-            apart = float(np.linalg.norm(formation.slots[owner] - formation.slots[other - 1]))
+            between = float(np.linalg.norm(formation.slots[owner] - formation.slots[other - 1]))
+            apart = between - float(formation.footprints[owner] + formation.footprints[other - 1])
             if apart <= self.config.spacing and formation.slots.any():
                 message = f"robots {owner + 1} and {other} would be pushed out of their slots, {apart:.4g} m apart"
                 yield Fault(("spacing",), message, shown(self.config.spacing), f"below {apart:.4g} m")
@@ -74,7 +86,7 @@ class SensedField(Part):
 
     def structure(self) -> Hashable:
         """Who feels an obstacle, whether that depends on the past, and whether robots are kept apart."""
-        return self.config.sensing, self.margin > 0, self.config.robots
+        return self.config.sensing, self.margin > 0, self.config.robots, self.config.line_of_sight
 
     @property
     def masked(self) -> bool:
@@ -93,15 +105,25 @@ class SensedField(Part):
         feels: NDArray[np.bool_] = np.array(self.config.assigned, dtype=int) == owner + 1
         return feels
 
-    def felt(self, formation: Formation, owner: int) -> NDArray[np.float64]:
-        """Centre and radius of those obstacles (m), shape (felt, 3)."""
-        felt: NDArray[np.float64] = formation.obstacles[self.feels(formation, owner)]
-        return felt
+    def felt(self, formation: Formation, owner: int) -> Obstacles:
+        """Those obstacles."""
+        return formation.obstacles.chosen(self.feels(formation, owner))
+
+    def layout(self, formation: Formation, owner: int) -> Hashable:
+        """The shapes of those obstacles, and whether they move."""
+        return self.felt(formation, owner).layout
 
     def neighbours(self, formation: Formation, owner: int) -> list[int]:
         """Numbers, from 1, of the robots that it keeps away from: those it hears."""
         return [j + 1 for j in formation.channels.heard[owner]] if self.config.robots else []
 
-    def spacing(self) -> Numbers:
-        """The range of the field around robots (m), where they are kept apart."""
-        return (np.array([self.config.spacing]),) if self.config.robots else ()
+    def of_robots(self, formation: Formation, owner: int) -> Numbers:
+        """The range of the field around robots (m), where they are kept apart; and the footprints, if there are any.
+
+        Those are the radius of its own and of the robots that it keeps away from (m).
+        """
+        spacing = (np.array([self.config.spacing]),) if self.config.robots else ()
+        if not formation.footprints.any():
+            return spacing
+        others = [j - 1 for j in self.neighbours(formation, owner)]
+        return *spacing, formation.footprints[[owner, *others]]

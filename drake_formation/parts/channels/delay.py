@@ -34,12 +34,9 @@ class Delay(Channel):
         return bool(self.config.delay == 0)
 
     @property
-    def _span(self) -> float:
+    def keeps_every(self) -> float:
+        """Between two states that are kept (s)."""
         return float(self.config.delay / self.config.pieces)
-
-    def period(self) -> float | None:
-        """How often a state is kept (s)."""
-        return self._span or None
 
     def structure(self) -> Hashable:
         """Delay and pieces, with which a block is made."""
@@ -47,7 +44,7 @@ class Delay(Channel):
 
     def layout(self, formation: Formation, owner: int) -> Hashable:  # noqa: ARG002
         """When it keeps the state first (s): the beginning is one of the moments kept."""
-        return formation.begin % self._span if self.config.delay else 0.0
+        return formation.begin % self.keeps_every if self.config.delay else 0.0
 
     def initial_discrete_state(self, formation: Formation, owner: int) -> Numbers | None:
         """Before the beginning the speaker moved evenly, at the speed at which it starts."""
@@ -62,4 +59,4 @@ class Delay(Channel):
     def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:  # noqa: ARG002
         """The delay, or none where it is a wire."""
         past = self.initial_discrete_state(formation, owner)
-        return DelayLine(self._span, self.layout(formation, owner), *past) if past else None
+        return DelayLine(self.keeps_every, self.layout(formation, owner), *past) if past else None

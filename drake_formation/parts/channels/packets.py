@@ -189,9 +189,9 @@ class Packets(Channel):
         """How often the receiver looks, and when first (s)."""
         return self.network.period / self.config.looks, self.config.phase
 
-    def period(self) -> float | None:
-        """How often the receiver looks (s)."""
-        return None if self.is_wire else self.timing[0]
+    def ticks(self) -> tuple[tuple[float, float], ...]:
+        """When the receiver looks."""
+        return () if self.is_wire else (self.timing,)
 
     def structure(self) -> Hashable:
         """What its block is made of."""

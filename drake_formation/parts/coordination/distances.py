@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 from drake_formation.config.errors import Fault
-from drake_formation.formation import graphs
 from drake_formation.formation.formation import Formation
 from drake_formation.formation.rigidity import rigid_rank, rigidity_rank
 from drake_formation.parts.springs.hookean import hookean_spring_force
@@ -29,7 +28,7 @@ def distance_force(
 def flexible(formation: Formation) -> Iterator[Fault]:
     """What there is to say where distances over the channels do not hold the shape, by the section ``consensus``."""
     if "rank_of_channels" not in formation.kept:
-        formation.kept["rank_of_channels"] = rigidity_rank(formation.slots, graphs.edges(formation.channels.graph))
+        formation.kept["rank_of_channels"] = rigidity_rank(formation.slots, formation.channels.counted)
     rank, needed = formation.kept["rank_of_channels"], rigid_rank(formation.robots)
     if rank < needed:
         message = f"law hookean does not hold the shape: its channels hold {rank} independent distances"

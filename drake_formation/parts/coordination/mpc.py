@@ -1,12 +1,13 @@
 """Model predictive control of the whole formation, with force limits and a distance to obstacles."""
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Iterator
 from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from drake_formation.config.errors import Fault
 from drake_formation.config.values import NonNegative, Positive
 from drake_formation.formation.formation import Formation
 from drake_formation.parts.coordination.linear_formation import formation_matrices, spring_matrix
@@ -15,6 +16,7 @@ from drake_formation.parts.coordination.prediction import SampledModel, sampled
 from drake_formation.parts.coordination.weights import FormationControl, Weights, input_cost, state_cost
 from drake_formation.parts.part import Numbers
 from drake_formation.parts.registry import part
+from drake_formation.systems.outlines import ROUND
 
 Array = NDArray[np.float64]
 
@@ -36,8 +38,8 @@ class MpcConfig(Weights):
     )
     clearance: NonNegative | None = Field(
         default=None,
-        description="least distance to the surface of obstacles at every sample of the transport (m), one for all or "
-        "one a robot; obstacles are ignored where not given",
+        description="least distance to the surface of known obstacles at every sample of the transport (m), one for "
+        "all or one a robot; obstacles are ignored where not given",
     )
 
 
@@ -72,13 +74,31 @@ class Mpc(FormationControl):
         """Limits, distances, slots, obstacles, and the models without and with the object."""
         configs = [part.config for part in formation.parts["coordination"]]
         limits = [np.inf if config.limit is None else config.limit for config in configs]
-        distances = [-np.inf if config.clearance is None else config.clearance for config in configs]
+        kept = [-np.inf if config.clearance is None else config.clearance for config in configs]
+        distances = kept + formation.footprints
         packed = (model.pack() for model in models(formation))
-        return np.array(limits), np.array(distances), formation.slots, formation.obstacles, *packed
+        return np.array(limits), distances, formation.slots, _known_discs(formation), *packed
+
+    def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:
+        """Whether it can plan at all, and keep the distances that are asked for."""
+        yield from super().checks(formation, owner)
+        if self.config.clearance is None:
+            return
+        for index, obstacle in enumerate(formation.obstacles):
+            if obstacle.known and obstacle.layout != ROUND:
+                message = "mpc plans around circles at rest alone"
+                path = ("..", "avoidance", "obstacles", index)
+                yield Fault(path, message, allowed="a circle that does not move, known: false, or no clearance of mpc")
 
     def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:  # noqa: ARG002
         """The controller, in double only."""
         return MpcController(owner, Schedule(self.config.period, self.config.horizon), numbers)
+
+
+def _known_discs(formation: Formation) -> Array:
+    """Centre and radius of each obstacle (m), shape (M, 3); of those that are unknown nothing is kept away from."""
+    rows = [[*item.vertices[0], item.radius if item.known else -np.inf] for item in formation.obstacles]
+    return np.array(rows, dtype=float).reshape(-1, 3)
 
 
 KEPT = "mpc"

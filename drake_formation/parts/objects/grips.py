@@ -18,7 +18,7 @@ class GripNumbers(LookNumbers):
     grip_damping: NonNegative = Field(default=400.0, description="damping of a grip c_g (N s/m); chosen: 400")
     grip_strength: Positive | None = Field(
         default=None,
-        description="force F_g (N) that a grip bears: beyond it, it breaks for good; default: unlimited",
+        description="force F_g (N) beyond which a grip breaks for good; default: unlimited",
     )
 
 

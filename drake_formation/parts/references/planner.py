@@ -1,8 +1,8 @@
 """A way around known obstacles, planned by an artificial potential field before the run.
 
 The formation centre flows down the potential U = ‖p − goal‖ + Σ ½ η (1/ρ − 1/ρ0)², the second part Khatib's (1986) for
-every known obstacle nearer than ρ0. An obstacle is a disc here: its radius and the formation's, so that ρ is the
-clearance of the robots, however they stand.
+every known obstacle nearer than ρ0. An obstacle is grown by the radius of the formation, so that ρ is the clearance of
+the robots, however they stand.
 """
 
 from dataclasses import dataclass
@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydrake.trajectories import PiecewisePolynomial
 
+from drake_formation.formation.obstacles import Obstacles
 from drake_formation.parts.references.waypoints import chord_shares, waypoint_trajectory
+from drake_formation.vectors import least_from_segment
 
 Array = NDArray[np.float64]
 
@@ -47,24 +49,24 @@ class PotentialField:
 
     Attributes:
         goal: where the attraction of unit strength pulls to (m), shape (2,).
-        discs: centre and radius of every known obstacle, the formation's radius included (m), shape (obstacles, 3).
-        clearance: where the repulsion balances the attraction (m), so that no flow comes nearer to a single disc.
-        reach: ρ0, beyond which nothing is felt (m), above the clearance. A disc near the goal reaches no farther than
-            the goal, which so remains a minimum; the goal must be farther than the clearance from it.
+        obstacles: the known obstacles, grown by the formation's radius; none moves.
+        clearance: where the repulsion balances the attraction (m), so that no flow comes nearer to a single obstacle.
+        reach: ρ0, beyond which nothing is felt (m), above the clearance. An obstacle near the goal reaches no farther
+            than the goal, which so remains a minimum; the goal must be farther than the clearance from it.
     """
 
     goal: Array
-    discs: Array
+    obstacles: Obstacles
     clearance: float
     reach: float
 
     def reaches(self) -> Array:
-        """ρ0 of every disc (m), shape (obstacles,)."""
-        result: Array = np.minimum(self.reach, clearances(self.goal, self.discs))
+        """ρ0 of every obstacle (m), shape (obstacles,)."""
+        result: Array = np.minimum(self.reach, clearances(self.goal, self.obstacles))
         return result
 
     def gains(self) -> Array:
-        """η of every disc (m³): the repulsion η (1/ρ − 1/ρ0)/ρ² is 1 where ρ is the clearance."""
+        """η of every obstacle (m³): the repulsion η (1/ρ − 1/ρ0)/ρ² is 1 where ρ is the clearance."""
         result: Array = self.clearance**2 / (1 / self.clearance - 1 / self.reaches())
         return result
 
@@ -72,11 +74,11 @@ class PotentialField:
 def plan(start: ArrayLike, field: PotentialField) -> Array:
     """The way of the formation centre down the field, as a polygonal line.
 
-    A disc straight ahead leaves the flow on the ridge between the two ways around it. It starts a thousandth of the
-    clearance to the left of the line to the goal: any disturbance would decide, this one always alike.
+    An obstacle straight ahead leaves the flow on the ridge between the two ways around it. It starts a thousandth of
+    the clearance to the left of the line to the goal: any disturbance would decide, this one always alike.
 
     Args:
-        start: where it begins (m), shape (2,), outside all discs.
+        start: where it begins (m), shape (2,), outside all obstacles.
         field: the potential.
 
     Returns:
@@ -94,7 +96,7 @@ def plan(start: ArrayLike, field: PotentialField) -> Array:
     path, lowest, wasted = [begin], np.inf, 0
     for _ in range(MOST_STEPS):
         # Outside all reaches the flow is straight: one step leads to the next of them.
-        outside = (clearances(point, field.discs) - reaches).min(initial=np.inf)
+        outside = (clearances(point, field.obstacles) - reaches).min(initial=np.inf)
         step = max(STEP * field.clearance, float(outside))
         if np.linalg.norm(field.goal - point) <= step:
             return np.array([*path, field.goal])
@@ -112,8 +114,9 @@ def plan(start: ArrayLike, field: PotentialField) -> Array:
 def plan_trajectory(path: Array, field: PotentialField, duration: float) -> PiecewisePolynomial:
     """A plan as a smooth trajectory from rest to rest.
 
-    The flow turns sharply where it meets a disc straight ahead. Two moving averages along the way round its corners;
-    where they cut into a clearance, the way is pushed out again. A curve is laid through points at equal distances.
+    The flow turns sharply where it meets an obstacle straight ahead. Two moving averages along the way round its
+    corners; where they cut into a clearance, the way is pushed out again. A curve is laid through points at equal
+    distances.
 
     Args:
         path: from :func:`plan`: points (m), shape (points, 2), of which not all are one.
@@ -139,39 +142,43 @@ def _averaged(points: Array, reach: int) -> Array:
 
 
 def _pushed_clear(points: Array, field: PotentialField) -> Array:
-    """Points pushed straight out of the discs to the clearance, one disc after the other."""
-    for disc in field.discs:
-        away = points - disc[:2]
+    """Points pushed straight out of the obstacles to the clearance, one obstacle after the other."""
+    for k in range(len(field.obstacles)):
+        vectors, surfaces = field.obstacles.chosen([k]).away(points)
+        away = vectors[:, 0]
         lengths = np.hypot(*away.T)[:, None]
-        missing = np.maximum(field.clearance + disc[2] - lengths, 0.0)
+        missing = np.maximum(field.clearance + surfaces - lengths, 0.0)
         points = points + missing * away / np.maximum(lengths, np.finfo(float).tiny)
     return points
 
 
-def clearances(point: ArrayLike, discs: Array) -> Array:
-    """Distance of points from every disc (m), shape (..., obstacles); negative inside."""
-    away = np.asarray(point, dtype=float)[..., None, :] - discs[:, :2]
-    result: Array = np.hypot(away[..., 0], away[..., 1]) - discs[:, 2]
+def clearances(point: ArrayLike, obstacles: Obstacles) -> Array:
+    """Distance of points from every obstacle (m), shape (..., obstacles); negative inside."""
+    away, surfaces = obstacles.away(point)
+    result: Array = np.hypot(away[..., 0], away[..., 1]) - surfaces
     return result
 
 
-def closest(path: Array, discs: Array) -> Array:
-    """Least distance of a polygonal line from every disc (m), between its points too; shape (obstacles,)."""
+def closest(path: Array, obstacles: Obstacles) -> Array:
+    """Least distance of a polygonal line from every obstacle (m), between its points too; shape (obstacles,).
+
+    Not below minus the radius where it crosses a segment or a polygon's edge.
+    """
     begin, way = path[:-1, None], np.diff(path, axis=0)[:, None]
-    offset = discs[:, :2] - begin
-    squared = np.maximum((way**2).sum(axis=-1), np.finfo(float).tiny)
-    along = np.clip((offset * way).sum(axis=-1) / squared, 0.0, 1.0)
-    result: Array = np.linalg.norm(offset - along[..., None] * way, axis=-1).min(axis=0) - discs[:, 2]
-    return result
+    begins, extents = obstacles.edges
+    apart = least_from_segment(begin - begins, np.broadcast_to(way, (len(way), len(begins), 2)), extents).min(axis=0)
+    result = np.full(len(obstacles), np.inf)
+    np.minimum.at(result, obstacles.edge_owners, apart)
+    return result - obstacles.radii
 
 
 def _potential(point: Array, field: PotentialField, reaches: Array, gains: Array) -> tuple[float, Array]:
     """Potential (m) and the force down it, shape (2,)."""
     to_goal = field.goal - point
     distance = np.linalg.norm(to_goal)
-    away = point - field.discs[:, :2]
+    away, surfaces = field.obstacles.away(point)
     from_centre = np.hypot(*away.T)
-    clearance = from_centre - field.discs[:, 2]
+    clearance = from_centre - surfaces
     slope = np.maximum(1 / clearance - 1 / reaches, 0.0)
     push = gains * slope / clearance**2
     force: Array = to_goal / distance + (push / from_centre) @ away

@@ -38,7 +38,8 @@ class PlannedReference(Motion):
         """What the plan knows, and how far it keeps away."""
 
         known: Known = Field(
-            default="all", description="which obstacles the plan knows, numbered from 1; robots sense all, known or not"
+            default="all",
+            description="which obstacles the plan knows, numbered from 1, or all that are known; robots sense all",
         )
         clearance: Gap = Field(
             default=1.3,
@@ -61,13 +62,13 @@ class PlannedReference(Motion):
     def known(self, formation: Formation) -> list[int]:
         """Indices, from 0, of the obstacles that the plan knows."""
         if self.config.known == "all":
-            return list(range(len(formation.obstacles)))
+            return [index for index, obstacle in enumerate(formation.obstacles) if obstacle.known]
         return [number - 1 for number in self.config.known]
 
     def field(self, formation: Formation) -> PotentialField:
         """The field in which the formation centre is planned."""
-        discs = formation.obstacles[self.known(formation)] + [0.0, 0.0, formation.radius]
-        return PotentialField(formation.goal, discs, self.config.clearance, self.config.reach)
+        known = formation.obstacles.chosen(self.known(formation)).grown(formation.extent)
+        return PotentialField(formation.goal, known, self.config.clearance, self.config.reach)
 
     def trajectory(self, formation: Formation) -> PiecewisePolynomial:
         """The plan, made once for a formation.
@@ -97,6 +98,14 @@ class PlannedReference(Motion):
                 yield Fault(path, f"there is no obstacle {number}", shown(number), allowed)
             elif number in numbers[:index]:
                 yield Fault(path, f"the same obstacle as entry {numbers.index(number)}", shown(number), "each once")
+            elif not formation.obstacles.items[number - 1].known:
+                message = f"obstacle {number} is said to be unknown"
+                yield Fault(path, message, shown(number), f"avoidance.obstacles.{number - 1}.known: true")
+        for index in self.known(formation):
+            if 0 <= index < count and len(formation.obstacles.items[index].motion):
+                message = f"obstacle {index + 1} moves, and a plan made before the run knows obstacles at rest alone"
+                allowed = f"avoidance.obstacles.{index}.known: false, or an obstacle at rest"
+                yield Fault(("known",), message, shown(self.config.known), allowed)
 
     def _reach_faults(self) -> Iterator[Fault]:
         if self.config.reach <= self.config.clearance:
@@ -115,8 +124,8 @@ class PlannedReference(Motion):
             (GOAL, "the formation at the goal is", goal),
         )
         for path, what, centre in places:
-            for index in np.flatnonzero(clearances(centre, field.discs) <= clearance):
-                apart = clearance + field.discs[index, 2]
+            for index in np.flatnonzero(clearances(centre, field.obstacles) <= clearance):
+                apart = clearance + field.obstacles.radii[index]
                 message = f"{what} nearer to obstacle {known[index] + 1} than the plan's clearance"
                 allowed = (
                     f"a formation centre more than {apart:.4g} m from it, or a smaller transport.reference.clearance"
@@ -133,7 +142,7 @@ class PlannedReference(Motion):
             yield Fault((), message, allowed=ways_out)
             return
         places = trajectory.vector_values(np.linspace(0.0, trajectory.end_time(), 1000)).T
-        kept = closest(places, self.field(formation).discs).min(initial=np.inf)
+        kept = closest(places, self.field(formation).obstacles).min(initial=np.inf)
         if kept < KEPT * self.config.clearance:
             message = f"the plan comes within {kept:.3g} m of a known obstacle when smoothed"
             yield Fault(("clearance",), message, shown(self.config.clearance), ways_out)

@@ -2,7 +2,7 @@
 
 import functools
 from collections.abc import Hashable, Iterator
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,7 +10,7 @@ from pydantic import Field
 from pydrake.systems.controllers import DiscreteTimeLinearQuadraticRegulator
 
 from drake_formation.config.errors import Fault
-from drake_formation.config.values import CostMatrix, Section
+from drake_formation.config.values import CostMatrix, Period, Section
 from drake_formation.formation.formation import Formation
 from drake_formation.parts.part import Numbers
 from drake_formation.parts.registry import part
@@ -19,9 +19,6 @@ from drake_formation.parts.tracking.regulator import Regulator
 from drake_formation.parts.tracking.sampled_controller import SampledController
 
 Array = NDArray[np.float64]
-
-Period = Annotated[float, Field(ge=1e-4, le=1e3)]
-"""A sampling period (s); in shorter ones a run would do nothing else than sample."""
 
 
 def sampled_matrices(mass: float, period: float) -> tuple[Array, Array]:

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from drake_formation.config.each import Owners
 from drake_formation.config.errors import Fault, Path, shown
 from drake_formation.scenario import derive
 from drake_formation.scenario.schema import MOST_ROBOTS, FormationStart, Grid, Polygon, Scenario, Slots
@@ -13,11 +14,14 @@ _SAME_PLACE = 1e-9
 
 
 def size(scenario: Scenario) -> Iterator[Fault]:
-    """The number of robots."""
+    """The number of robots, and of their radii."""
     count = derive.robot_count(scenario.formation)
     if count > MOST_ROBOTS:
         path: Path = ("formation", "rows") if isinstance(scenario.formation, Grid) else ("formation",)
         yield Fault(path, f"{count} robots are too many", allowed=f"at most {MOST_ROBOTS} robots")
+    else:
+        owners = Owners.robots(count)
+        yield from owners.faults(("robots", "radius"), scenario.robots.radius, listed=False, required=False)
 
 
 def check(scenario: Scenario) -> Iterator[Fault]:
@@ -57,6 +61,11 @@ def _slots(scenario: Scenario) -> Iterator[Fault]:
         path: Path = ("formation", "slots", second) if isinstance(shape, Slots) else ("formation",)
         message = f"robots {first + 1} and {second + 1} have the same slot"
         yield Fault(path, message, shown(slots[second].tolist()), f"slots more than {_SAME_PLACE:g} m apart")
+    for first, second in _touching(slots, derive.footprints(scenario)):
+        message = f"robots {first + 1} and {second + 1} touch in their slots"
+        yield Fault(
+            ("robots", "radius"), message, shown(scenario.robots.radius), "smaller radii, or slots farther apart"
+        )
 
 
 def _starts(scenario: Scenario) -> Iterator[Fault]:
@@ -70,12 +79,15 @@ def _starts(scenario: Scenario) -> Iterator[Fault]:
             shown(positions[second].tolist()),
             f"starting positions more than {_SAME_PLACE:g} m apart",
         )
-    for robot, obstacle in _inside(scenario, positions):
+    for first, second in [] if isinstance(start, FormationStart) else _touching(positions, derive.footprints(scenario)):
+        message = f"robots {first + 1} and {second + 1} touch where they start"
+        yield Fault(("robots", "radius"), message, shown(scenario.robots.radius), "smaller radii, or other starts")
+    for robot, obstacle in _inside(scenario, positions, scenario.simulator.start_time):
         yield Fault(
             (*path, robot) if isinstance(start, tuple) else path,
             f"robot {robot + 1} starts inside obstacle {obstacle + 1}",
             shown(positions[robot].tolist()),
-            _clear_of(scenario, obstacle),
+            _clear_of(scenario, obstacle, robot),
         )
 
 
@@ -84,17 +96,19 @@ def _hand_off(scenario: Scenario) -> Iterator[Fault]:
     if scenario.aggregation.duration == 0:
         return
     positions = derive.aggregation_centre(scenario) + derive.slots(scenario)
-    for robot, obstacle in _inside(scenario, positions):
+    for robot, obstacle in _inside(scenario, positions, scenario.simulator.start_time + scenario.aggregation.duration):
         message = f"the formation gathers about the mean start with robot {robot + 1} inside obstacle {obstacle + 1}"
-        place, allowed = shown(positions[robot].tolist()), _clear_of(scenario, obstacle)
+        place, allowed = shown(positions[robot].tolist()), _clear_of(scenario, obstacle, robot)
         yield Fault(("robots", "start"), message, place, allowed)
 
 
 def _goal(scenario: Scenario) -> Iterator[Fault]:
     positions = np.asarray(scenario.transport.goal) + derive.slots(scenario)
-    for robot, obstacle in _inside(scenario, positions):
+    end = scenario.simulator.start_time + scenario.aggregation.duration + scenario.transport.duration
+    for robot, obstacle in _inside(scenario, positions, end):
         message = f"robot {robot + 1}'s slot at the goal is inside obstacle {obstacle + 1}"
-        yield Fault(("transport", "goal"), message, shown(positions[robot].tolist()), _clear_of(scenario, obstacle))
+        allowed = _clear_of(scenario, obstacle, robot)
+        yield Fault(("transport", "goal"), message, shown(positions[robot].tolist()), allowed)
 
 
 def _coincident(positions: derive.Array) -> list[tuple[int, int]]:
@@ -104,15 +118,24 @@ def _coincident(positions: derive.Array) -> list[tuple[int, int]]:
     return [(int(same[:, robot].argmax()), int(robot)) for robot in np.flatnonzero(same.any(axis=0))]
 
 
-def _inside(scenario: Scenario, positions: derive.Array) -> list[tuple[int, int]]:
-    """Robots and the obstacles that they are in or on."""
-    return [
-        (int(robot), index)
-        for index, obstacle in enumerate(scenario.avoidance.obstacles)
-        for robot in np.flatnonzero(np.linalg.norm(positions - obstacle.position, axis=1) <= obstacle.radius)
-    ]
+def _touching(positions: derive.Array, radii: derive.Array) -> list[tuple[int, int]]:
+    """Pairs of robots whose footprints meet, though they do not stand in one place."""
+    if not radii.any():
+        return []
+    apart = np.linalg.norm(positions[:, None] - positions[None], axis=2)
+    touching = np.triu((apart <= radii[:, None] + radii) & (apart >= _SAME_PLACE), k=1)
+    return [(int(first), int(second)) for first, second in np.argwhere(touching)]
 
 
-def _clear_of(scenario: Scenario, index: int) -> str:
+def _inside(scenario: Scenario, positions: derive.Array, time: float) -> list[tuple[int, int]]:
+    """Robots and the obstacles that they are in or on at a time (s), with what their footprints cover."""
+    clearance = derive.obstacles(scenario).clearance(positions, time) - derive.footprints(scenario)[:, None]
+    return [(int(robot), int(obstacle)) for obstacle, robot in np.argwhere(clearance.T <= 0)]
+
+
+def _clear_of(scenario: Scenario, index: int, robot: int) -> str:
     obstacle = scenario.avoidance.obstacles[index]
-    return f"more than {obstacle.radius:g} m from {shown(obstacle.position)}"
+    distance = obstacle.radius + derive.footprints(scenario)[robot]
+    place = derive.outline(obstacle).tolist()
+    moving = "" if obstacle.velocity is None and not obstacle.waypoints else ", which moves"
+    return f"more than {distance:g} m from {shown(place[0] if len(place) == 1 else place)}{moving}"

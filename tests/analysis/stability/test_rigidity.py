@@ -9,7 +9,8 @@ from drake_formation import load_scenario
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.analysis.linear.linearization import linearize
 from drake_formation.analysis.linear.motion_subspaces import spring_stiffness
-from drake_formation.analysis.stability.rigidity import spring_linearization, stiff_springs
+from drake_formation.analysis.stability.held_shape import stiff_springs
+from drake_formation.analysis.stability.rigidity import spring_linearization
 from drake_formation.formation.rigidity import rigidity_matrix
 from drake_formation.scenario import resolve
 
@@ -23,7 +24,7 @@ def springs_of(name="quadrilateral", **overrides):
 @settings(max_examples=15)
 def test_drakes_stiffness_is_the_rigidity_matrix_weighted(scenario):
     formation = linearize(scenario)
-    edges = stiff_springs(formation)
+    edges = stiff_springs(formation.resolved)
     if not edges:
         with pytest.raises(IllPosedError, match="no springs"):
             spring_linearization(formation)

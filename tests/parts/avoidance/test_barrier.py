@@ -4,7 +4,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import minimize
 
-from drake_formation import ScenarioError, load_scenario, simulate
+from drake_formation import ScenarioError, load_scenario, metrics, simulate
 from drake_formation.analysis import certify
 from drake_formation.parts.avoidance.barrier_function import barrier_force, smooth_barrier
 from drake_formation.scenario import resolve, with_overrides
@@ -177,7 +177,7 @@ def test_a_start_within_the_clearance_is_refused_with_its_place():
 def test_the_analysis_is_of_a_formation_that_feels_no_obstacle():
     certificate = certify(scene([{"position": [3.0, 0.5], "radius": 0.3}]))
     assert certificate.stable
-    assert resolve(certificate.formation.scenario).obstacles.size == 0
+    assert not len(resolve(certificate.formation.scenario).obstacles)
     assert any(line.startswith("avoidance") for line in certificate.to_dict()["not_covered"])
 
 
@@ -190,3 +190,28 @@ def test_a_robot_that_its_forces_alone_do_not_move_is_refused(robots):
     changes["avoidance"] = {"kind": "barrier", "obstacles": [{"position": [9.0, 9.0]}]}
     with pytest.raises(ScenarioError, match=r"robots\.(drag|wheel_force_limit): the barrier takes robot 1 for a mass"):
         load_scenario("line", overrides=changes)
+
+
+@pytest.mark.parametrize(
+    "obstacle",
+    [
+        {"kind": "segment", "ends": [[6.0, 5.5], [7.0, 5.5]]},
+        {"position": [6.0, 5.5], "velocity": [0.1, 0.0]},
+    ],
+)
+def test_what_the_proof_does_not_cover_is_refused(obstacle):
+    with pytest.raises(ScenarioError, match=r"avoidance.obstacles.1: the barrier keeps its clearance from circles at"):
+        load_scenario(
+            "line", overrides={"avoidance": {"kind": "barrier", "obstacles": [{"position": [9, 9]}, obstacle]}}
+        )
+
+
+def test_the_clearance_is_the_footprints():
+    obstacle = {"position": [6.0, 5.05], "radius": 0.1}
+    found = []
+    for radius, footprint in ((0.3, 0.0), (0.1, 0.2)):
+        overrides = {"avoidance": {"kind": "barrier", "obstacles": [obstacle | {"radius": radius}]}}
+        scenario = load_scenario("line", overrides=overrides | {"robots.radius": footprint, "transport.duration": 20.0})
+        found.append(simulate(scenario, engine="blocks"))
+    np.testing.assert_allclose(found[0]["position"], found[1]["position"], rtol=0, atol=1e-9)
+    assert metrics(found[1]).min_clearance_m == pytest.approx(metrics(found[0]).min_clearance_m)

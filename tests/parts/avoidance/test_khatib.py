@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from pydrake.autodiffutils import AutoDiffXd
 from pydrake.symbolic import Expression, Variable
 
-from drake_formation.parts.avoidance.khatib import ObstacleAvoidance, avoidance_force
+from drake_formation.parts.avoidance.khatib import TOUCH, ObstacleAvoidance, at_contact, avoidance_force
 
 angles = st.floats(-np.pi, np.pi)
 radii = st.just(0.0) | st.floats(0.01, 2)
@@ -138,3 +138,25 @@ def test_inside_an_obstacle_that_is_not_felt_there_is_no_force(at):
 @pytest.mark.parametrize("sensed", [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]])
 def test_only_sensed_obstacles_are_felt(sensed):
     assert force(sensed=sensed) == pytest.approx(sensed[0] * single(0) + sensed[1] * single(1))
+
+
+@given(angles, radii, st.floats(0.05, 1), ranges, gains, shares)
+def test_a_footprint_is_felt_as_a_larger_obstacle_until_it_all_but_touches(
+    angle, radius, footprint, sensing_range, gain, share
+):
+    dx, dy = away(angle, radius + footprint + TOUCH * footprint + share * sensing_range)
+    felt = avoidance_force(*at_contact(dx, dy, radius, footprint), sensing_range, gain)
+    assert felt == pytest.approx(avoidance_force(dx, dy, radius + footprint, sensing_range, gain), rel=1e-9)
+
+
+@given(angles, radii, st.floats(0.05, 1), ranges, gains, shares)
+def test_a_footprint_that_touches_is_pushed_away_by_a_finite_force(
+    angle, radius, footprint, sensing_range, gain, share
+):
+    nearest = TOUCH * footprint
+    expected = gain * max(1 / nearest - 1 / sensing_range, 0) / nearest**2
+    for distance in (radius + footprint, radius + share * footprint, share * footprint):
+        dx, dy = away(angle, distance)
+        fx, fy = avoidance_force(*at_contact(dx, dy, radius, footprint), sensing_range, gain)
+        assert np.hypot(fx, fy) == pytest.approx(expected, rel=1e-6)
+        assert fx * dx + fy * dy > 0

@@ -231,3 +231,22 @@ def test_springs_of_the_model_are_the_objects():
 def test_what_it_cannot_do_is_refused(changes, words):
     with pytest.raises(ScenarioError, match=words):
         resolve(with_overrides(scenario(), changes))
+
+
+@pytest.mark.parametrize(
+    "obstacle", [{"kind": "segment", "ends": [[9, 9], [9, 10]]}, {"position": [9, 9], "velocity": [0.1, 0.0]}]
+)
+def test_it_plans_around_circles_at_rest_alone_unless_it_need_not_know(obstacle):
+    with pytest.raises(ScenarioError, match=r"avoidance.obstacles.0: mpc plans around circles at rest alone"):
+        scenario({"consensus.clearance": 0.2, "avoidance.obstacles": [obstacle]})
+    scenario({"consensus.clearance": 0.2, "avoidance.obstacles": [obstacle | {"known": False}]})
+    scenario({"avoidance.obstacles": [obstacle]})
+
+
+def test_what_it_does_not_know_it_keeps_no_distance_from():
+    known = {**AT_ONCE, **BEFORE_IT, "transport.duration": 2.0}
+    unknown = {**known, "avoidance.obstacles": [BEFORE_IT["avoidance.obstacles"][0] | {"known": False}]}
+    near = {"consensus.clearance": 0.2}
+    found = simulate(scenario(unknown | near))["position"].values
+    free = simulate(scenario(unknown))["position"].values
+    np.testing.assert_allclose(found[-1], free[-1], atol=1e-6)

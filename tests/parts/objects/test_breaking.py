@@ -6,9 +6,6 @@ from carrying import carried
 
 from drake_formation import build_diagram, load_scenario, metrics, simulate
 from drake_formation.parameters import set_parameters
-from drake_formation.parts.objects.breaking import SpringsBear
-from drake_formation.parts.springs.hookean import Hookean
-from drake_formation.parts.springs.linear import Linear
 from drake_formation.scenario import ScenarioError, resolve
 from drake_formation.simulation import events
 
@@ -83,19 +80,6 @@ def test_off_by_default_costs_no_block_and_no_bit():
     held = simulate(bound, engine="blocks")
     assert np.isnan(held["broken_at"].values).all()
     np.testing.assert_allclose(held["position"][-1], plain["position"][-1], rtol=1e-9)
-
-
-@pytest.mark.parametrize("law", [Hookean, Linear])
-def test_bounds_are_of_strain_and_of_force(law):
-    judge = SpringsBear(law, ((0, 1),), False)
-    states = [[1.2, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0]]
-    spring = np.array([100.0, 0.0, 1.0, 0.0])  # 20 % longer than at rest, which takes 20 N
-    for bounds, intact in (([0.21, np.inf], 1), ([0.19, np.inf], 0), ([np.inf, 21.0], 1), ([np.inf, 19.0], 0)):
-        assert judge(states, [spring, np.array(bounds)]) == [intact]
-    shorter = [[0.8, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0]]
-    assert judge(shorter, [spring, np.array([0.19, np.inf])]) == [0]
-    let_go = SpringsBear(law, ((0, 1),), True)
-    assert let_go([*states, [0.0]], [spring, np.array([0.1, 1.0])]) == [1]
 
 
 def test_only_the_weakest_spring_breaks():

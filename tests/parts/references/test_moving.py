@@ -92,7 +92,7 @@ def test_what_a_plan_avoids_has_the_formations_size():
     example = scenario({"kind": "potential_field", "known": [1]}, WALL)
     part, formation = reference_of(example)
     assert formation.radius == 0.5
-    np.testing.assert_array_equal(part.field(formation).discs, [[6, 1.8, 1.0]])
+    np.testing.assert_array_equal(part.field(formation).obstacles.discs, [[6, 1.8, 1.0]])
 
 
 def scattered_obstacles(rng):
@@ -120,7 +120,7 @@ def test_a_sound_plan_keeps_every_robot_clear_of_what_it_knows(rng):
         return
     motion = trajectory(example)
     centres = motion.vector_values(np.linspace(0, motion.end_time(), 1500)).T
-    discs = np.array([[*obstacle["position"], obstacle["radius"]] for obstacle in obstacles])
+    discs = resolve(example).obstacles
     for slot in ([0, -0.5], [0, 0.5]):
         assert clearances(centres + slot, discs).min() > 0.7 * 0.5
 
@@ -260,3 +260,29 @@ def test_the_shipped_s_curve_passes_within_range_of_both_obstacles_on_different_
         nearest = centres[np.linalg.norm(centres - obstacle.position, axis=1).argmin()] - obstacle.position
         assert np.linalg.norm(nearest) - resolve(example).radius < example.avoidance.range
         assert np.sign(nearest[1]) == side
+
+
+WALL_AHEAD = {"kind": "segment", "ends": [[10.0, 2.0], [10.0, 4.5]], "radius": 0.1}
+
+
+def test_a_plan_goes_round_a_wall_it_knows():
+    example = scenario(NARROW, [WALL_AHEAD])
+    assert not check(example)
+    motion = trajectory(example)
+    places = motion.vector_values(np.linspace(0, motion.end_time(), 1500)).T
+    assert clearances(places, resolve(example).obstacles).min() > 0.7 * 0.5 + 0.5
+
+
+def test_what_is_said_to_be_unknown_no_plan_knows():
+    hidden = WALL_AHEAD | {"known": False}
+    straight = trajectory(scenario(NARROW, [])).vector_values(np.linspace(0, 1, 50))
+    np.testing.assert_array_equal(trajectory(scenario(NARROW, [hidden])).vector_values(np.linspace(0, 1, 50)), straight)
+    (fault,) = check(scenario(NARROW | {"known": [1]}, [hidden]))
+    assert fault.message == "obstacle 1 is said to be unknown"
+
+
+def test_no_plan_is_made_around_what_moves():
+    moving = WALL_AHEAD | {"velocity": [0.0, 0.1]}
+    (fault,) = check(scenario(NARROW, [moving]))
+    assert "obstacle 1 moves" in fault.message
+    assert not check(scenario(NARROW, [moving | {"known": False}]))

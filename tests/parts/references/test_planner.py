@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from strategies import generators
 
+from drake_formation.formation.obstacles import Obstacles
 from drake_formation.parts.references.minimum_jerk import minimum_jerk
 from drake_formation.parts.references.planner import (
     PIECES,
@@ -24,7 +25,7 @@ few = settings(max_examples=30)
 
 
 def field(discs, goal=GOAL):
-    return PotentialField(np.array(goal), np.array(discs, dtype=float).reshape(-1, 3), CLEARANCE, REACH)
+    return PotentialField(np.array(goal), Obstacles.circles(discs), CLEARANCE, REACH)
 
 
 def sampled(trajectory):
@@ -39,7 +40,7 @@ def random_field(rng):
 
 def potential(points, world):
     """‖p − goal‖ + Σ ½ η (1/ρ − 1/ρ0)², infinite inside a disc; written down once more."""
-    away = clearances(points, world.discs)
+    away = clearances(points, world.obstacles)
     with np.errstate(divide="ignore"):
         near = np.maximum(1 / np.maximum(away, 0.0) - 1 / world.reaches(), 0.0)
     return np.linalg.norm(points - world.goal, axis=-1) + (0.5 * world.gains() * near**2).sum(axis=-1)
@@ -71,7 +72,7 @@ def test_a_plan_reaches_the_goal_clear_of_every_disc_or_is_stuck_in_a_hollow(rng
     if path is None:
         return
     np.testing.assert_array_equal(path[[0, -1]], [START, GOAL])
-    assert clearances(path, world.discs).min() > 0
+    assert clearances(path, world.obstacles).min() > 0
 
 
 @few
@@ -79,8 +80,8 @@ def test_a_plan_reaches_the_goal_clear_of_every_disc_or_is_stuck_in_a_hollow(rng
 def test_past_one_disc_a_plan_keeps_the_clearance(rng):
     world = field([[rng.uniform(4, 16), rng.uniform(-3, 3), rng.uniform(0.1, 2)]])
     path = plan(START, world)
-    assert clearances(path, world.discs).min() > 0.94 * CLEARANCE  # a step may lead a little too far
-    assert clearances(sampled(plan_trajectory(path, world, 60.0)), world.discs).min() > 0.75 * CLEARANCE
+    assert clearances(path, world.obstacles).min() > 0.94 * CLEARANCE  # a step may lead a little too far
+    assert clearances(sampled(plan_trajectory(path, world, 60.0)), world.obstacles).min() > 0.75 * CLEARANCE
 
 
 @few
@@ -91,7 +92,7 @@ def test_a_plan_flows_downhill(rng):
     path = planned(world)
     if path is None:
         return
-    free = (clearances(path, world.discs) >= world.reaches()).all(axis=1)
+    free = (clearances(path, world.obstacles) >= world.reaches()).all(axis=1)
     to_goal = GOAL - path
     for k in np.flatnonzero(free[1:-1]) + 1:
         step = path[k + 1] - path[k]
@@ -112,9 +113,9 @@ def test_most_fields_have_a_plan():
 @few
 @given(generators)
 def test_a_polygonal_lines_closest_point_is_that_of_its_densest_samples(rng):
-    path, discs = rng.uniform(-5, 5, (6, 2)), rng.uniform(0.1, 5, (4, 3))
+    path, obstacles = rng.uniform(-5, 5, (6, 2)), Obstacles.circles(rng.uniform(0.1, 5, (4, 3)))
     dense = np.vstack([np.linspace(a, b, 2000) for a, b in pairwise(path)])
-    np.testing.assert_allclose(closest(path, discs), clearances(dense, discs).min(axis=0), atol=5e-3)
+    np.testing.assert_allclose(closest(path, obstacles), clearances(dense, obstacles).min(axis=0), atol=5e-3)
 
 
 def test_head_on_a_plan_goes_around_to_the_left():

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from drake_formation.analysis.linear.block_diagonal import blocks, distinct
 from drake_formation.analysis.linear.linearization import STATES, LinearFormation, own
 from drake_formation.analysis.network.channel_verdict import UNKNOWN, ChannelVerdict, delay_verdict, packet_verdict
-from drake_formation.analysis.network.packets import ON_TIME, PacketChannel
+from drake_formation.analysis.network.packet_schedule import ON_TIME, PacketChannel
 from drake_formation.parts.channels.delay import Delay
 from drake_formation.parts.channels.packets import Packets
 

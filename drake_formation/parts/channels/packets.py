@@ -133,7 +133,8 @@ class Packets(Channel):
     def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:  # noqa: ARG002
         """What contradicts itself."""
         config, network = self.config, self.network
-        given = sorted(config.model_fields_set - {"profile", "bits"})
+        fields = type(config).model_fields
+        given = [name for name in fields if name != "profile" and getattr(config, name) != fields[name].default]
         if self.is_wire and given:
             message = "an ideal channel is a wire, which has no numbers"
             yield Fault((given[0],), message, shown(getattr(config, given[0])), "another profile, or profile alone")

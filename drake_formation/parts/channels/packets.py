@@ -122,7 +122,7 @@ class Packets(Part):
         if config.delays:
             return float(max(config.delays))
         width = 15.0 if config.distribution == "gamma" else 1.0
-        return network.delay + width * network.spread * (config.distribution != "constant")
+        return float(network.delay + width * network.spread * (config.distribution != "constant"))
 
     def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:  # noqa: ARG002
         """What contradicts itself."""
@@ -183,6 +183,20 @@ class Packets(Part):
         """How often the receiver looks, and when first (s)."""
         return self.network.period / self.config.looks, self.config.phase
 
+    def _waiting(self, formation: Formation) -> int:
+        """Packets of which the medium has not yet told what became of them: one that waits, and what it is done with.
+
+        While one is in the air, it is not told of those that were sent meanwhile.
+        """
+        if not formation.has_medium:
+            return 0
+        (medium,) = formation.parts["medium"]
+        return 4 + int(medium.airtime(self.config.bits) / self.network.period)
+
+    def layout(self, formation: Formation, owner: int) -> Hashable:  # noqa: ARG002
+        """How many packets may wait for the medium; none where there is none."""
+        return self._waiting(formation)
+
     def structure(self) -> Hashable:
         """What its block is made of."""
         if self.is_wire:
@@ -203,6 +217,7 @@ class Packets(Part):
                 config.burst_loss, config.quantum, config.clock_offset, config.clock_drift, config.trigger,
                 ORDERS[config.order], config.playout, config.missing == "zero", timeout, config.failure_rate,
                 config.repair_rate, config.range, len(config.delays), len(config.losses), len(config.outages),
+                (4 + 4 * self.listens) * formation.has_medium,
             ],
             dtype=float,
         )  # fmt: skip
@@ -223,7 +238,7 @@ class Packets(Part):
             np.array([*start, begin, 1.0]),
             np.array([0.0, 0.0, 0.0, 0.0, 0.0, begin]),
             np.array(memory),
-            np.zeros(law.ROW * self._rows),
+            np.zeros(law.ROW * (self._rows + self._waiting(formation))),
         )
 
     def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:
@@ -231,4 +246,5 @@ class Packets(Part):
         if self.is_wire:
             return None
         start = self.initial_discrete_state(formation, owner)
-        return PacketChannel(self.timing, numbers, start, self.listens, self.config.missing == "predict")
+        predicts = self.config.missing == "predict"
+        return PacketChannel(self.timing, numbers, start, self.listens, predicts, formation.has_medium)

@@ -45,7 +45,7 @@ types: $(VENV)/installed-dev
 	$(BIN)/mypy
 
 diagrams: $(VENV)/installed-dev
-	for name in line quadrilateral octagon s_curve; do \
+	for name in line quadrilateral octagon s_curve shared-medium; do \
 		$(BIN)/drake-formation graphviz $$name -o diagrams/$$name.svg || exit; \
 	done
 	for name in delay lossy link-failure saturated switching; do \
@@ -63,6 +63,8 @@ diagrams: $(VENV)/installed-dev
 	cp out/bandwidth/figures/bandwidth.png diagrams/bandwidth.png
 	$(BIN)/drake-formation sweep gains --out out/gains
 	cp out/gains/figures/consensus_error_m.png diagrams/gains-consensus-error.png
+	$(BIN)/drake-formation sweep bandwidth --out out/bandwidth
+	cp out/bandwidth/figures/consensus_error_m.png diagrams/shared-bandwidth.png
 	$(BIN)/drake-formation compare avoidance --out out/avoidance
 	cp out/avoidance/figures/paths.png diagrams/avoidance-paths.png
 	$(BIN)/drake-formation analyze line --set consensus.delta=1e4 --out out/certificate

@@ -7,6 +7,7 @@ from collections import defaultdict
 from collections.abc import Iterable
 from typing import Any
 
+import numpy as np
 from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort, System
 from pydrake.systems.primitives import Adder, ConstantVectorSource, Gain
 
@@ -305,6 +306,7 @@ def _talk(
     failing: Failing,
 ) -> None:
     """Wire every channel from the robot that speaks to the one that hears, through the channel's block if any."""
+    medium = _medium(builder, robots, formation, parameters)
     asked = [set(_input_names(robot)) for robot in robots]
     for k, (i, j) in enumerate(formation.channels.pairs.tolist()):
         name = f"channel_{j + 1}"
@@ -323,7 +325,27 @@ def _talk(
             builder.ExportOutput(block.GetOutputPort("traffic"), f"{channel_name(i, j)}_traffic")
         if "phase" in _input_names(block):
             builder.Connect(phase.get_output_port(), block.GetInputPort("phase"))
+        if medium:
+            builder.Connect(block.GetOutputPort("traffic"), medium.GetInputPort(f"traffic_{k + 1}"))
+            builder.Connect(medium.GetOutputPort(f"through_{k + 1}"), block.GetInputPort("through"))
         builder.Connect(failing.heard(i, j, block.GetOutputPort("received"), own), heard)
+
+
+def _medium(
+    builder: DiagramBuilder, robots: list[Diagram], formation: Formation, parameters: Parameters
+) -> System | None:
+    """The medium that all channels share, if they do; those that nobody listens to offer nothing to it."""
+    if not formation.has_medium:
+        return None
+    medium = _added(builder, "medium", formation, 0, parameters, "medium")
+    for j, robot in enumerate(robots):
+        builder.Connect(robot.GetOutputPort("state"), medium.GetInputPort(f"state_{j + 1}"))
+    for k, (i, j) in enumerate(formation.channels.pairs.tolist()):
+        if f"channel_{j + 1}" not in _input_names(robots[i]):
+            silent = builder.AddNamedSystem(f"{channel_name(i, j)}_silent", ConstantVectorSource(np.zeros(6)))
+            builder.Connect(silent.get_output_port(), medium.GetInputPort(f"traffic_{k + 1}"))
+    builder.ExportOutput(medium.GetOutputPort("airtime"), "medium_airtime")
+    return medium
 
 
 def _believed(robot: Diagram) -> OutputPort:

@@ -28,7 +28,7 @@ from drake_formation.analysis.network.delay_margin import DelayMargin, delay_mar
 from drake_formation.analysis.network.formation_channels import channel_certificate
 from drake_formation.analysis.network.intervals import Interval
 from drake_formation.analysis.network.loss_margin import LossMargin, loss_margin, stable_losses
-from drake_formation.analysis.network.packets import PacketChannel
+from drake_formation.analysis.network.packet_schedule import PacketChannel
 from drake_formation.analysis.network.rightmost_root import rightmost_root
 from drake_formation.analysis.network.sampled_data import SampledLoop, longest_period, stable_periods
 from drake_formation.analysis.network.stable_delays import stable_delays

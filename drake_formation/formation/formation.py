@@ -42,7 +42,7 @@ class Formation:
         transport_duration: how long they carry after it (s).
         law: the part by whose law the object's springs act.
         parts: the parts of every role: one a robot, one an edge for ``spring``, one a channel for ``channel``, and one
-            in all for ``reference`` and ``object``.
+            in all for ``reference``, ``object`` and ``medium``.
         seed: of all that is random in it.
         tolerance: consensus error beyond which it counts as lost (m).
         stages: what failures of robots make of it, in order of time, the first from the beginning; none where no robot
@@ -100,6 +100,11 @@ class Formation:
     def has_body(self) -> bool:
         """Whether the carried object is a body of its own, which exerts a load, and not springs between robots."""
         return bool(self.parts["object"][0].kind != SPRINGS)
+
+    @property
+    def has_medium(self) -> bool:
+        """Whether channels compete for airtime, and each has not its own."""
+        return bool(self.parts["medium"][0].kind != "none")
 
     @cached_property
     def radius(self) -> float:

@@ -106,6 +106,8 @@ class TracedBlock:
             LoweringError: Drake or the block's own code cannot do that in symbols.
         """
         system, context = self._symbolic
+        if function == UPDATE:
+            context = self._context_of(system)  # another one would know the update already, and not carry it out
         if function >= 0 and _vector_size(system.get_output_port(function)) < 0:
             raise LoweringError(self.path, "an output port of it that is needed is abstract")
         try:
@@ -141,6 +143,10 @@ class TracedBlock:
     @cached_property
     def _symbolic(self) -> tuple[Any, Context]:
         system, _ = self._converted
+        return system, self._context_of(system)
+
+    def _context_of(self, system: Any) -> Context:
+        """A Context of the block in symbols that holds a symbol for every number."""
         context = system.CreateDefaultContext()
         symbols = self.symbols
         context.SetTime(symbols.time)
@@ -153,7 +159,7 @@ class TracedBlock:
             context.SetDiscreteState(k, values)
         for k, values in enumerate(symbols.parameters):
             context.get_mutable_numeric_parameter(k).SetFromVector(values)
-        return system, context
+        return context
 
 
 CHOICE = (

@@ -12,6 +12,10 @@ TRAFFIC = ("sent", "lost", "delivered", "overtaken", "late", "sent_at")
 """What a channel of packets tells of itself: how many so far, and when the one in use was sent (s)."""
 
 
+REPORT = 5
+"""Numbers that a medium tells a channel: the packets carried last and before, when, and up to which it is done."""
+
+
 @dataclass(frozen=True)
 class Port:
     """A port by which the diagram knows a part.
@@ -167,11 +171,29 @@ ROLES: dict[str, Role] = {
             (
                 Port("sent", STATE, "the state of the robot that speaks (m, m/s)", required=True),
                 Port("own", STATE, "the state of the robot that listens (m, m/s)"),
+                Port("through", REPORT, "what the medium, where channels share one, has carried of its packets (1, s)"),
                 PHASE,
             ),
             (
                 Port("received", STATE, "what the listening robot takes for it (m, m/s)", required=True),
                 Port("traffic", len(TRAFFIC), "packets sent, lost, delivered, overtaken, late; when the last was sent"),
+            ),
+        ),
+        Role(
+            "medium",
+            ("consensus", "medium"),
+            "medium",
+            "none",
+            "formation",
+            (
+                Port("traffic_j", None, "what channel j, counted as they are listed, tells of its packets"),
+                Port("state_j", STATE, "the state of robot j, for every robot (m, m/s)"),
+            ),
+            (
+                Port("through_j", REPORT, "what it has carried of channel j's packets (1, s)", required=True),
+                Port(
+                    "airtime", 5, "packets offered, carried, dropped; frames that collided; airtime of all frames (s)"
+                ),
             ),
         ),
     )

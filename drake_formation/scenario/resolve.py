@@ -74,6 +74,7 @@ def check(scenario: Scenario) -> list[Fault]:
     if not places and not failing:
         formation = formation.changed(stages=stages(scenario))
     skipped = {"reference", *(["coordination"] if links else []), *(["object"] if places or links else [])}
+    skipped |= {"medium"} if links or handing else set()  # what shares it is not known
     faults = list(dict.fromkeys([
         *places,
         *(_part_faults(scenario, formation, ("reference",)) if not places else ()),  # it begins and ends at places

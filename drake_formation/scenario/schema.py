@@ -159,6 +159,10 @@ class Consensus(Section):
     channel: Annotated[Any, PartOf("channel")] = Field(
         default_factory=PartOf("channel").default, description="what becomes of a state on its way; paper: ideal"
     )
+    medium: Annotated[Any, PartOf("medium")] = Field(
+        default_factory=PartOf("medium").default,
+        description="whether channels that carry packets compete for airtime, and how; paper: none",
+    )
 
 
 class Avoidance(Section):

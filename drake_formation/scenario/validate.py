@@ -7,6 +7,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from drake_formation.config.errors import MESSAGES, Fault, nearest, shown
+from drake_formation.config.errors import Path as PathInScenario
 from drake_formation.parts.registry import broken, kinds
 from drake_formation.parts.roles import ROLES
 from drake_formation.scenario.fields import Place, chooser, locate, names
@@ -46,12 +47,23 @@ def _fault(detail: ErrorDetails) -> Fault:
         return _choice(place, value)
     if kind == "extra_forbidden":
         keys = place.section.model_fields
-        return Fault(place.path, MESSAGES[kind], allowed=", ".join(keys), suggestion=nearest(place.path[-1], keys))
+        allowed = ", ".join(keys) + _of_other_kinds(place.path)
+        return Fault(place.path, MESSAGES[kind], allowed=allowed, suggestion=nearest(place.path[-1], keys))
     if kind == "missing":
         return Fault(place.path, MESSAGES[kind], allowed=place.allowed)
     if kind == "value_error":
         return Fault(place.path, str(detail["ctx"]["error"]), shown(value), place.allowed)
     return _wrong(place, value, kind)
+
+
+def _of_other_kinds(path: PathInScenario) -> str:
+    """With which kinds of part a field would be known that is not one of the kind chosen; nothing where with none."""
+    *section, field = path
+    for role in ROLES.values():
+        if role.section == tuple(section):
+            others = [kind for kind, part in kinds(role.name).items() if field in part.Config.model_fields]
+            return f"; with {role.chooser}: {' or '.join(others)} also {field}" if others else ""
+    return ""
 
 
 def _wrong(place: Place, value: Any, kind: str) -> Fault:

@@ -6,7 +6,7 @@ compiled diagram calls the same machine code, so that both do the same to the la
 """
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from types import ModuleType
 from typing import Any
@@ -62,3 +62,22 @@ class SampledLaw:
     def __call__(self, time: float, inputs: Array, state: Array, numbers: Array) -> None:
         """Carry the update out, as compiled."""
         self.module.step(time, inputs, state, numbers)
+
+    def update(self, context: Any, ports: Sequence[Any], after: Any) -> None:
+        """Carry the update of a block out: its callback of Drake's, but for the block itself.
+
+        Args:
+            context: the block's.
+            ports: its input ports, all of them.
+            after: its discrete values, which are written.
+        """
+        groups = range(context.num_discrete_state_groups())
+        state = np.concatenate([context.get_discrete_state(k).CopyToVector() for k in groups])
+        parameters = range(context.num_numeric_parameter_groups())
+        numbers = [context.get_numeric_parameter(k).CopyToVector() for k in parameters]
+        self(context.get_time(), np.concatenate([port.Eval(context) for port in ports]), state, np.concatenate(numbers))
+        at = 0
+        for k in groups:
+            group = after.get_mutable_vector(k)
+            group.SetFromVector(state[at : at + group.size()])
+            at += group.size()

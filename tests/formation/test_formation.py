@@ -25,6 +25,7 @@ def test_there_is_a_part_for_every_owner(name):
         "channel": len(formation.channels.pairs),
         "reference": 1,
         "object": 1,
+        "medium": 1,
     }
     for role, parts in formation.parts.items():
         assert len(parts) == counts.get(role, formation.robots)

@@ -5,6 +5,7 @@
   imaginary axis in ``crossing``. ``delay_margin``: how old the robots' states may be.
 - ``sampled_data``: packets once a period, forces held in between; the periods at which that is stable.
 - ``loss_margin``: how many packets may be lost; by ``mean_square`` stability.
-- ``channel_verdict``: whether a system is stable over given channels: by its ticks where they carry ``packets``, by its
+- ``formation_channels``: whether the formation is stable over its channels, by the ``channel_verdict`` on a linear
+  system: from its ticks where they carry ``packets``, at the times of their ``packet_schedule``, and from its
   ``rightmost_root`` where they are pure delays.
 """

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.analysis.network.mean_square import decays_in_mean_square
-from drake_formation.analysis.network.packets import PacketChannel, PacketTick, packet_ticks, schedule
+from drake_formation.analysis.network.packet_schedule import PacketChannel, schedule
+from drake_formation.analysis.network.packets import LARGEST, PacketTick, in_turn, packet_ticks
 from drake_formation.analysis.network.rightmost_root import CONVERGED, rightmost_root
 
 Array = NDArray[np.float64]
@@ -73,10 +74,12 @@ def _in_mean_square(mean: ChannelVerdict, ticks: list[PacketTick]) -> ChannelVer
     growth = mean.growth_1_per_s
     if mean.label == "unstable":
         return ChannelVerdict("unstable", f"in the mean over what is lost, {mean.reason}", growth)
-    if len(ticks) > 1:
-        reason = "it decays in the mean over what is lost; the mean square is not looked at where ticks differ"
+    if len(ticks) * len(ticks[0].loop.base) > LARGEST:
+        reason = (
+            f"it decays in the mean over what is lost; {len(ticks)} ticks that differ are too many for the mean square"
+        )
         return ChannelVerdict(UNKNOWN, reason, growth)
-    if not decays_in_mean_square(*ticks[0]):
+    if not decays_in_mean_square(*in_turn(ticks)):
         reason = "it decays in the mean over what is lost, but its mean square grows: some runs go far astray"
         return ChannelVerdict(UNKNOWN, reason, growth)
     return ChannelVerdict("stable", f"its mean square decays; in the mean over what is lost, {mean.reason}", growth)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from drake_formation.analysis.linear.block_diagonal import blocks, distinct
 from drake_formation.analysis.linear.linearization import STATES, LinearFormation, own
 from drake_formation.analysis.network.channel_verdict import UNKNOWN, ChannelVerdict, delay_verdict, packet_verdict
-from drake_formation.analysis.network.packets import ON_TIME, PacketChannel
+from drake_formation.analysis.network.packet_schedule import ON_TIME, PacketChannel
 from drake_formation.parts.channels.delay import Delay
 from drake_formation.parts.channels.packets import Packets
 
@@ -39,6 +39,8 @@ def channel_certificate(formation: LinearFormation) -> ChannelVerdict | None:
     parts = formation.channels
     if all(_is_wire(part) for part in parts):
         return None
+    if formation.resolved.has_medium:
+        return ChannelVerdict(UNKNOWN, "channels share a medium, which makes some packets wait and loses others")
     for part in parts:
         reason = None if _is_wire(part) else _not_linear(part, formation)
         if reason is not None:

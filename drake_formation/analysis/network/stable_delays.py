@@ -15,8 +15,8 @@ from drake_formation.analysis.network.intervals import Interval
 
 Array = NDArray[np.float64]
 
-NO_PHASE = 1e-9
-"""A phase (rad) that is zero: the root lies on the imaginary axis already without any delay."""
+NO_PHASE = 1e-6
+"""A phase (rad) this small is zero if without any delay, too, there is a root on the imaginary axis."""
 
 
 def stable_delays(present: ArrayLike, delayed: ArrayLike, *, up_to: float = np.inf) -> tuple[Interval, ...]:
@@ -46,9 +46,14 @@ def stable_delays(present: ArrayLike, delayed: ArrayLike, *, up_to: float = np.i
 def _between(present: Array, delayed: Array, crossings: list[Crossing], up_to: float) -> tuple[Interval, ...]:
     """The same, from all crossings of a system none of whose roots stays on the imaginary axis."""
     size = float(np.linalg.norm(present) + np.linalg.norm(delayed))
-    passages = [_Passage.through(crossing, *directions(present, delayed, crossing)) for crossing in crossings]
+    at_once = np.linalg.eigvals(present + delayed)
+    on_axis = bool((np.abs(at_once.real) <= ON_AXIS * size).any())
+    passages = [
+        _Passage.through(crossing, *directions(present, delayed, crossing), NO_PHASE if on_axis else 0.0)
+        for crossing in crossings
+    ]
     right = 2 * sum(each.right for each in passages if each.phase == 0)
-    right += int((np.linalg.eigvals(present + delayed).real > ON_AXIS * size).sum())
+    right += int((at_once.real > ON_AXIS * size).sum())
     end, start = min(up_to, _last_return(passages)), 0.0
     if passages and end == np.inf:
         raise IllPosedError("it is stable but for single delays without end; ask for delays up to a finite one")
@@ -73,9 +78,9 @@ class _Passage(NamedTuple):
     left: int
 
     @classmethod
-    def through(cls, crossing: Crossing, right: int, left: int) -> "_Passage":
-        """The roots through the point of a crossing."""
-        at_once = min(crossing.phase, 2 * np.pi - crossing.phase) <= NO_PHASE
+    def through(cls, crossing: Crossing, right: int, left: int, no_phase: float) -> "_Passage":
+        """The roots through the point of a crossing, at which they are without delay if its phase is none."""
+        at_once = min(crossing.phase, 2 * np.pi - crossing.phase) <= no_phase
         return cls(0.0 if at_once else crossing.phase, crossing.frequency, right, left)
 
     def times(self) -> Iterator[tuple[float, int]]:

@@ -17,9 +17,10 @@ def PacketChannel_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
     class Impl(LeafSystem_[T]):  # type: ignore[misc]
         """Packets from one robot to another, sent and looked for at times.
 
-        Input ports: ``sent`` (the state of the robot that speaks, size 4) and, where asked for, ``own`` (that of the
-        one that hears). Output ports: ``received`` (what that takes for the state of the other, size 4) and ``traffic``
-        (packets sent, lost, delivered, overtaken and late so far, and when the one in use was sent (s); size 6). Where
+        Input ports: ``sent`` (the state of the robot that speaks, size 4), where asked for ``own`` (that of the one
+        that hears), and where channels share a medium ``through`` (what it has carried, size 5). Output ports:
+        ``received`` (what the one that hears takes for the state of the other, size 4) and ``traffic`` (packets sent,
+        lost, delivered, overtaken and late so far, and when the one in use was sent (s); size 6). Where
         there is ``own``, ``received`` is the place beside it at which nothing is to be corrected whenever the
         neighbour is dropped. Discrete state: what is heard (state, stamp of the sender's clock, 0 where the neighbour
         is dropped), the traffic, what the channel remembers, and the queue. Parameters: 0, the settings; 1, measured
@@ -33,6 +34,7 @@ def PacketChannel_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             start: tuple[ArrayLike, ...],
             listens: bool,
             predicts: bool,
+            shares: bool,
             *,
             converter: Any = None,
         ) -> None:
@@ -44,14 +46,16 @@ def PacketChannel_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
                 start: the groups of discrete state at the start.
                 listens: whether the channel asks for the state of the robot that hears.
                 predicts: whether that lets the state heard move on at the speed heard.
+                shares: whether a packet is not on its way before a medium has carried it.
                 converter: for Drake's scalar conversion.
             """
             LeafSystem_[T].__init__(self, converter=converter)
-            self.arguments = (timing, numbers, start, listens, predicts)
-            self.kind = listens, predicts, timing  # all else that it computes with is a parameter
+            self.arguments = (timing, numbers, start, listens, predicts, shares)
+            self.kind = listens, predicts, shares, timing  # all else that it computes with is a parameter
             self.sampled_law = CARRY
             self._listens, self._predicts = listens, predicts
-            self._inputs = [self.DeclareVectorInputPort(name, 4) for name in ("sent", "own")[: 1 + listens]]
+            ports = [("sent", 4), *([("own", 4)] * listens), *([("through", 5)] * shares)]
+            self._inputs = [self.DeclareVectorInputPort(*port) for port in ports]
             for group in numbers:
                 self.DeclareNumericParameter(BasicVector_[T](np.ravel(group)))
             heard, traffic, *_ = [self.DeclareDiscreteState(BasicVector_[T](np.ravel(group))) for group in start]
@@ -68,18 +72,7 @@ def PacketChannel_(T: Any) -> Any:  # noqa: N802 - Drake's name for a template
             Impl._construct(self, *other.arguments, converter=converter)
 
         def _carry(self, context: Any, after: Any) -> None:
-            groups = range(context.num_discrete_state_groups())
-            state = np.concatenate([context.get_discrete_state(k).CopyToVector() for k in groups])
-            numbers = [
-                context.get_numeric_parameter(k).CopyToVector() for k in range(context.num_numeric_parameter_groups())
-            ]
-            inputs = np.concatenate([port.Eval(context) for port in self._inputs])
-            self.sampled_law(context.get_time(), inputs, state, np.concatenate(numbers))
-            at = 0
-            for k in groups:
-                group = after.get_mutable_vector(k)
-                group.SetFromVector(state[at : at + group.size()])
-                at += group.size()
+            self.sampled_law.update(context, self._inputs, after)
 
         def _calc_received(self, context: Any, output: Any) -> None:
             x, y, vx, vy, stamp, counts = context.get_discrete_state(0).CopyToVector().tolist()

@@ -3,7 +3,7 @@
 The functions are in the Python that numba compiles; :data:`CARRY` is the law. Time is in seconds, places in metres, in
 the world frame. A packet is on its way in one row of the queue: its number, when it arrives, when it was sent by the
 sender's clock and by the true one, whether a later one arrives before it, and the state it carries. Number 0 is a free
-row.
+row. Where channels share a medium, a packet waits in its row until the medium says that it is through.
 """
 
 import math
@@ -28,15 +28,19 @@ changes.
 """
 QUEUE = HEARD + TRAFFIC + MEMORY
 PERIOD, PHASE, DELAY, SPREAD, DISTRIBUTION, LOSS, BURST_LENGTH, BURST_LOSS, QUANTUM, OFFSET = range(10)
-DRIFT, TRIGGER, ORDER, PLAYOUT, ZERO, TIMEOUT, FAILURES, REPAIRS, RANGE, DELAYS, LOSSES, OUTAGES = range(10, 22)
-"""Where the settings stand among the parameters; the last three are lengths of the tables that follow them."""
-SETTINGS = 22
+DRIFT, TRIGGER, ORDER, PLAYOUT, ZERO, TIMEOUT, FAILURES, REPAIRS, RANGE, DELAYS, LOSSES, OUTAGES, MEDIUM = range(10, 23)
+"""Where the settings stand among the parameters. ``DELAYS``, ``LOSSES`` and ``OUTAGES`` are lengths of the tables that
+follow them; ``MEDIUM`` says where among the inputs the medium's report is, 0 for none.
+"""
+SETTINGS = 23
 CONSTANT, UNIFORM, GAMMA, MEASURED = range(4)
 """Distributions of delays."""
 NEWEST, IN_ORDER, BUFFERED = range(3)
 """What a receiver does with what has arrived."""
 ROUNDING = 1e-9
 """By how much a sum of times may be off (s)."""
+WAITING = 1e300
+"""When a packet arrives that waits for the medium (s)."""
 
 
 def carry_packets(time: float, inputs: Array, state: Array, numbers: Array) -> None:
@@ -44,10 +48,13 @@ def carry_packets(time: float, inputs: Array, state: Array, numbers: Array) -> N
 
     Args:
         time: time (s).
-        inputs: the state of the robot that speaks, and where the channel asks for it of the one that hears.
+        inputs: the state of the robot that speaks; where the channel asks for it, of the one that hears; and where
+            there is a medium, what it reports.
         state: as the groups of :class:`drake_formation.parts.channels.packet_channel.PacketChannel`; updated.
         numbers: the settings, then the tables of measured delays (s), losses (1: lost) and outages (from, to; s).
     """
+    if numbers[MEDIUM] > 0.0:
+        hear_of_medium(inputs, state, numbers)
     clock = (time - numbers[PHASE]) * (1.0 + numbers[DRIFT]) / numbers[PERIOD] + ROUNDING
     if clock >= state[SLOTS]:
         state[SLOTS] = math.floor(clock) + 1.0
@@ -68,9 +75,38 @@ def send(time: float, inputs: Array, state: Array, numbers: Array) -> None:
         return
     state[LAST], state[LAST + 1] = inputs[0], inputs[1]
     state[FRESHLY_SENT] += 1.0
-    lost, delay = is_lost(state, numbers), drawn_delay(state, numbers)
-    if lost or not is_up(time, inputs, state, numbers) or not enqueue(time, delay, inputs, state, numbers):
+    if numbers[MEDIUM] > 0.0:
+        state[LOST] += 0.0 if enqueue(time, WAITING, inputs, state, numbers) else 1.0
+        return
+    number = state[FRESHLY_SENT]
+    lost, delay = is_lost(number, state, numbers), drawn_delay(number, state, numbers)
+    if lost or not is_up(time, inputs, state, numbers) or not enqueue(time, time + delay, inputs, state, numbers):
         state[LOST] += 1.0
+
+
+def hear_of_medium(inputs: Array, state: Array, numbers: Array) -> None:
+    """Let packets depart that the medium has carried since, at most two of them; what else it is done with is lost."""
+    report = int(numbers[MEDIUM])
+    for carried in range(report + 2, report - 1, -2):
+        for row in range(QUEUE, state.size, ROW):
+            if state[row] > 0.0 and state[row] == inputs[carried] and state[row + 1] == WAITING:
+                depart(row, inputs[carried + 1], inputs, state, numbers)
+    for row in range(QUEUE, state.size, ROW):
+        if 0.0 < state[row] <= inputs[report + 4] and state[row + 1] == WAITING:
+            state[row] = 0.0
+            state[LOST] += 1.0
+
+
+def depart(row: int, through: float, inputs: Array, state: Array, numbers: Array) -> None:
+    """Put a packet on its way that has come through the medium; it may be lost still."""
+    number = state[row]
+    lost, delay = is_lost(number, state, numbers), drawn_delay(number, state, numbers)
+    if lost or not is_up(through, inputs, state, numbers):
+        state[row] = 0.0
+        state[LOST] += 1.0
+    else:
+        state[row + 1] = through + delay
+        overtake(number, through + delay, state)
 
 
 def draw(state: Array) -> float:
@@ -80,16 +116,15 @@ def draw(state: Array) -> float:
     return float(value)
 
 
-def is_lost(state: Array, numbers: Array) -> bool:
+def is_lost(number: float, state: Array, numbers: Array) -> bool:
     """Whether the packet is lost: measured, independently, or in bursts (Gilbert 1960; Elliott 1963).
 
     The channel is good, where nothing is lost, or bad; bad times are geometric, and so often that the share of lost
     packets is as set.
     """
-    sent = int(state[FRESHLY_SENT]) - 1
     if numbers[LOSSES] > 0.0:
         start = SETTINGS + int(numbers[DELAYS])
-        return bool(numbers[start + sent % int(numbers[LOSSES])] > 0.0)
+        return bool(numbers[start + (int(number) - 1) % int(numbers[LOSSES])] > 0.0)
     if numbers[LOSS] == 0.0:
         return False
     if numbers[BURST_LENGTH] <= 1.0:
@@ -104,11 +139,11 @@ def is_lost(state: Array, numbers: Array) -> bool:
     return bool(state[BURST] > 0.0 and draw(state) < numbers[BURST_LOSS])
 
 
-def drawn_delay(state: Array, numbers: Array) -> float:
+def drawn_delay(number: float, state: Array, numbers: Array) -> float:
     """How long the packet is on its way (s); its distribution has the mean and the spread that are set."""
     kind, mean, spread = numbers[DISTRIBUTION], numbers[DELAY], numbers[SPREAD]
     if kind == MEASURED:
-        return float(numbers[SETTINGS + (int(state[FRESHLY_SENT]) - 1) % int(numbers[DELAYS])])
+        return float(numbers[SETTINGS + (int(number) - 1) % int(numbers[DELAYS])])
     if kind == UNIFORM:
         return float(mean + spread * (2.0 * draw(state) - 1.0))
     if kind == GAMMA and spread > 0.0:
@@ -147,15 +182,21 @@ def is_up(time: float, inputs: Array, state: Array, numbers: Array) -> bool:
     return True
 
 
-def enqueue(time: float, delay: float, inputs: Array, state: Array, numbers: Array) -> bool:
+def overtake(number: float, arrival: float, state: Array) -> None:
+    """Count the packets that were sent earlier and arrive later, each of them once."""
+    for row in range(QUEUE, state.size, ROW):
+        if 0.0 < state[row] < number and arrival < state[row + 1] < WAITING and state[row + 4] == 0.0:
+            state[row + 4] = 1.0
+            state[OVERTAKEN] += 1.0
+
+
+def enqueue(time: float, arrival: float, inputs: Array, state: Array, numbers: Array) -> bool:
     """Put the packet into a free row of the queue; whether there was one."""
-    free, arrival = -1, time + delay
+    free = -1
     for row in range(QUEUE, state.size, ROW):
         if state[row] == 0.0:
             free = row
-        elif state[row + 1] > arrival and state[row + 4] == 0.0:
-            state[row + 4] = 1.0
-            state[OVERTAKEN] += 1.0
+    overtake(state[FRESHLY_SENT], arrival, state)
     if free < 0:
         return False
     state[free], state[free + 1], state[free + 3], state[free + 4] = state[FRESHLY_SENT], arrival, time, 0.0
@@ -202,7 +243,8 @@ def next_row(time: float, state: Array, numbers: Array) -> int:
 CONSTANTS: dict[str, Any] = {name: value for name, value in dict(globals()).items() if isinstance(value, int | float)}
 CARRY = SampledLaw(
     carry_packets,
-    *(advance, next_uniform, draw, is_lost, gamma, drawn_delay, is_up, enqueue, next_row, take_next, send),
+    *(advance, next_uniform, draw, is_lost, gamma, drawn_delay, is_up, overtake, enqueue),
+    *(next_row, take_next, depart, hear_of_medium, send),
     constants=CONSTANTS,
 )
 """The law."""

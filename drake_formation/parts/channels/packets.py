@@ -133,7 +133,8 @@ class Packets(Channel):
     def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:  # noqa: ARG002
         """What contradicts itself."""
         config, network = self.config, self.network
-        given = sorted(config.model_fields_set - {"profile", "bits"})
+        fields = type(config).model_fields
+        given = [name for name in fields if name != "profile" and getattr(config, name) != fields[name].default]
         if self.is_wire and given:
             message = "an ideal channel is a wire, which has no numbers"
             yield Fault((given[0],), message, shown(getattr(config, given[0])), "another profile, or profile alone")
@@ -193,6 +194,20 @@ class Packets(Channel):
         """When the receiver looks."""
         return () if self.is_wire else (self.timing,)
 
+    def _waiting(self, formation: Formation) -> int:
+        """Packets of which the medium has not yet told what became of them: one that waits, and what it is done with.
+
+        While one is in the air, it is not told of those that were sent meanwhile.
+        """
+        if not formation.has_medium:
+            return 0
+        (medium,) = formation.parts["medium"]
+        return 4 + int(medium.airtime(self.config.bits) / self.network.period)
+
+    def layout(self, formation: Formation, owner: int) -> Hashable:  # noqa: ARG002
+        """How many packets may wait for the medium; none where there is none."""
+        return self._waiting(formation)
+
     def structure(self) -> Hashable:
         """What its block is made of."""
         if self.is_wire:
@@ -213,6 +228,7 @@ class Packets(Channel):
                 config.burst_loss, config.quantum, config.clock_offset, config.clock_drift, config.trigger,
                 ORDERS[config.order], config.playout, config.missing == "zero", timeout, config.failure_rate,
                 config.repair_rate, config.range, len(config.delays), len(config.losses), len(config.outages),
+                (4 + 4 * self.listens) * formation.has_medium,
             ],
             dtype=float,
         )  # fmt: skip
@@ -233,7 +249,7 @@ class Packets(Channel):
             np.array([*start, begin, 1.0]),
             np.array([0.0, 0.0, 0.0, 0.0, 0.0, begin]),
             np.array(memory),
-            np.zeros(law.ROW * self._rows),
+            np.zeros(law.ROW * (self._rows + self._waiting(formation))),
         )
 
     def block(self, formation: Formation, owner: int, numbers: Numbers) -> Any:
@@ -241,4 +257,5 @@ class Packets(Channel):
         if self.is_wire:
             return None
         start = self.initial_discrete_state(formation, owner)
-        return PacketChannel(self.timing, numbers, start, self.listens, self.config.missing == "predict")
+        predicts = self.config.missing == "predict"
+        return PacketChannel(self.timing, numbers, start, self.listens, predicts, formation.has_medium)

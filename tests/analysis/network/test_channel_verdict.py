@@ -8,7 +8,8 @@ from strategies import generators
 
 from drake_formation.analysis import stable_delays, stable_periods
 from drake_formation.analysis.network.channel_verdict import delay_verdict, packet_verdict
-from drake_formation.analysis.network.packets import PacketChannel, packet_ticks
+from drake_formation.analysis.network.packet_schedule import PacketChannel
+from drake_formation.analysis.network.packets import packet_ticks
 
 PLANT = np.array([[0.0, 1.0], [0.0, -0.1]])
 FEEDBACK = -np.array([[0.0], [0.1]]) @ np.array([[3.75, 11.5]])
@@ -67,10 +68,29 @@ def test_losses_are_certified_exactly_where_the_second_moment_decays(rng, channe
         assert packet_verdict(present, links).label == expected
 
 
+@given(rng=generators, looks=st.integers(1, 3))
+@settings(max_examples=25)
+def test_so_they_are_where_ticks_differ(rng, looks):
+    present = rng.normal(size=(2, 2)) - rng.uniform(0, 2) * np.eye(2)
+    links = [
+        PacketChannel(rng.normal(size=(2, 1)), rng.normal(size=(1, 2)), period, 0.1, looks, loss=0.5)
+        for period in (0.6, 0.9)
+    ]
+    ticks = packet_ticks(present, links)
+    second = np.eye(len(ticks[0].loop.base) ** 2)
+    mean = np.eye(len(ticks[0].loop.base))
+    for tick in ticks:
+        second, mean = moments(tick, len(tick.arrival)) @ second, tick.mean @ mean
+    radii = [np.abs(np.linalg.eigvals(matrix)).max() for matrix in (second, mean)]
+    expected = "stable" if radii[0] < 1 else "unstable" if radii[1] > 1 else "not certified"
+    if min(abs(radius - 1) for radius in radii) > 1e-6:
+        assert packet_verdict(present, links).label == expected
+
+
 def test_what_cannot_be_told_says_why():
     one = np.eye(1)
-    unequal = [PacketChannel(-one, one, 0.1, loss=0.1), PacketChannel(-one, one, 0.2, loss=0.1)]
-    assert "where ticks differ" in packet_verdict(-one, unequal).reason
+    unequal = [PacketChannel(-0.1 * one, one, 0.1, 8.0, loss=0.1), PacketChannel(-0.1 * one, one, 2.3, loss=0.1)]
+    assert "23 ticks that differ" in packet_verdict(-one, unequal).reason
     assert "rounding" in packet_verdict(0 * one, [PacketChannel(0 * one, one, 0.1)]).reason
     assert "rounding" in delay_verdict(0 * one, []).reason
     late = packet_verdict(-one, [PacketChannel(-one, one, 1e-3, 2.0)])

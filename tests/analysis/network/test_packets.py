@@ -1,14 +1,13 @@
 """What a tick does to a system with packets, against packets sent, queued and received one by one."""
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from strategies import generators
 
-from drake_formation.analysis.linear.errors import IllPosedError
-from drake_formation.analysis.network.packets import PacketChannel, packet_ticks, schedule
+from drake_formation.analysis.network.packet_schedule import PacketChannel, schedule
+from drake_formation.analysis.network.packets import packet_ticks
 
 STATES = 3
 DRIFT = np.array([[0.0, 1.0], [0.0, 0.0]])
@@ -81,29 +80,6 @@ def flown(present, receivers, state, begin, end):
         return present @ now + sum(receiver.channel.into @ receiver.now(time) for receiver in receivers)
 
     return solve_ivp(rate, (begin, end), state, rtol=1e-9, atol=1e-12, method="DOP853").y[:, -1]
-
-
-def test_late_packets_wait_for_the_next_look():
-    matrix = np.eye(1)
-    for looks, delay, expected in (
-        (1, 0.0, 0),
-        (1, 0.001, 1),
-        (1, 0.01, 1),
-        (1, 0.0101, 2),
-        (2, 0.0101, 3),
-        (2, 0.005, 1),
-    ):
-        times = schedule([PacketChannel(matrix, matrix, 0.01, delay, looks)])
-        assert times.late == (expected,)
-        assert times.tick == pytest.approx(0.01 / looks)
-
-
-def test_channels_of_other_periods_and_phases_share_a_tick():
-    matrix = np.eye(1)
-    times = schedule([PacketChannel(matrix, matrix, 0.02), PacketChannel(matrix, matrix, 0.03, phase=0.005)])
-    assert (times.tick, times.ticks, times.every, times.first) == (pytest.approx(0.005), 12, (4, 6), (0, 1))
-    with pytest.raises(IllPosedError, match=r"every 0\.01, 0\.0101 s have no common tick"):
-        schedule([PacketChannel(matrix, matrix, 0.01), PacketChannel(matrix, matrix, 0.0101)])
 
 
 def test_what_is_under_way_is_kept_once_for_all_that_hear_it():

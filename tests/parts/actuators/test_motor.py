@@ -176,3 +176,8 @@ def test_a_largest_force_is_certified_as_unlimited_and_nothing_else_is():
 def test_bad_motors_are_refused_with_the_place(motor, message):
     with pytest.raises(ScenarioError, match=message):
         limited(two(), **motor)
+
+
+def test_limits_of_ideal_actuators_are_refused_with_the_kind_that_has_them():
+    with pytest.raises(ScenarioError, match=r"actuator.max_force: unknown key; allowed: kind; with kind: motor also"):
+        with_overrides(two(), {"actuator": {"max_force": 1.0}})

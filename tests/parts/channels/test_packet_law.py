@@ -17,6 +17,7 @@ def settings(**given):
     class Alone:
         channels = type("Channels", (), {"pairs": np.array([[0, 1]])})
         slots = np.zeros((2, 2))
+        has_medium = False
 
     channel = Packets(Packets.Config(**given))
     return np.concatenate(channel.numbers(Alone, 0)), channel
@@ -68,7 +69,7 @@ def test_compiled_and_in_python_it_is_the_same_law():
 def test_delays_are_distributed_as_they_say(distribution):
     numbers, _ = settings(delay=0.05, spread=0.02, distribution=distribution)
     state = start()
-    drawn = np.array([law.drawn_delay(state, numbers) for _ in range(4000)])
+    drawn = np.array([law.drawn_delay(1.0, state, numbers) for _ in range(4000)])
     shape = (0.05 / 0.02) ** 2
     known = {"uniform": stats.uniform(0.03, 0.04), "gamma": stats.gamma(shape, scale=0.05 / shape)}[distribution]
     assert stats.kstest(drawn, known.cdf).pvalue > 0.01

@@ -7,6 +7,7 @@ from tracking_loops import alone, two
 from drake_formation import ScenarioError, simulate, with_overrides
 from drake_formation.analysis import IllPosedError, linearize
 from drake_formation.parts.sensors.noisy import STREAMS, measured_state
+from drake_formation.simulation.run import PreparedRun
 from drake_formation.systems.random_stream import random_start
 
 STATE = [1.0, -2.0, 0.3, 0.4]
@@ -89,6 +90,14 @@ def test_one_seed_gives_the_same_noise_in_every_engine_and_whoever_else_has_nois
     drawn = [(run["measured_position"] - blocks["position"][0])[0] for run in early]
     np.testing.assert_array_equal(drawn[0], drawn[1])
     np.testing.assert_array_equal(single["measured_position"][:, 1], single["position"][:, 1])
+
+
+def test_a_prepared_run_begins_with_the_noise_of_each_seed():
+    scenario = seen(two(duration=0.3), period=0.1, position_noise=0.01)
+    prepared, reseeded = PreparedRun(scenario, engine="blocks"), with_overrides(scenario, {"seed": 1})
+    for variant in (reseeded, scenario):
+        alone_run = simulate(variant, engine="blocks")
+        np.testing.assert_array_equal(prepared.run(variant)["measured_position"], alone_run["measured_position"])
 
 
 def test_the_response_without_obstacles_has_the_same_noise():

@@ -1,0 +1,1 @@
+"""What all channels of packets share: airtime, for which they compete."""

@@ -2,6 +2,7 @@
 
 import os
 import shutil
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -46,12 +47,31 @@ return {x: place.x, y: -place.z, shown: object.visible,
 """
 
 
+@contextmanager
+def opened(address):
+    """A page with a recording, in a browser of its own; one that has hung, as on a busy machine, is tried once more."""
+    from selenium.common.exceptions import TimeoutException
+
+    driver = chromium()
+    driver.set_page_load_timeout(60)
+    driver.set_script_timeout(60)
+    try:
+        driver.get(address)
+    except TimeoutException:
+        driver.quit()
+        driver = chromium()
+        driver.get(address)
+    try:
+        yield View(driver)
+    finally:
+        driver.quit()
+
+
 class View:
     """A page with a recording, open in a browser."""
 
-    def __init__(self, driver, address):
+    def __init__(self, driver):
         self.driver = driver
-        driver.get(address)
 
     def scrub(self, time):
         """Go to a time of the recording (s)."""

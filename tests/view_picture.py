@@ -4,7 +4,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from browsing import View, chromium, page_address
+from browsing import opened, page_address
 from carrying import carried
 from PIL import Image
 
@@ -25,14 +25,12 @@ TIME, COLOURS = 11.5, 128
 
 def main() -> None:
     result = simulate(carried(OBJECT, **SCENE))
-    browser = chromium()
     with tempfile.TemporaryDirectory() as folder:
         page = Path(folder) / "view.html"
         write_page(result, page, follow=True)
-        view = View(browser, page_address(page))
-        view.scrub(TIME)
-        picture = Image.fromarray(view.picture().astype("uint8"))
-    browser.quit()
+        with opened(page_address(page)) as view:
+            view.scrub(TIME)
+            picture = Image.fromarray(view.picture().astype("uint8"))
     picture.quantize(COLOURS).save(sys.argv[1], optimize=True)
 
 

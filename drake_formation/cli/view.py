@@ -39,6 +39,7 @@ def view(
     """See a scenario or a result move in the browser: play, pause, scrub, and run it again with other gains."""
     from drake_formation.places import OutputError, reason, reserved_file
     from drake_formation.simulation import SimulationError
+    from drake_formation.viz.errors import PortError
     from drake_formation.viz.view.page import quiet_meshcat, write_page
     from drake_formation.viz.view.session import Session
 
@@ -63,8 +64,8 @@ def view(
             if browser:
                 webbrowser.open(meshcat.web_url())
             session.serve()
-    except RuntimeError as error:
-        stop(f"port {port}: {error}", WRONG_INPUT)
+    except (PortError, ValueError) as error:
+        stop(str(error), WRONG_INPUT)
 
 
 def _result(source: str, overrides: list[str] | None) -> "xr.Dataset":

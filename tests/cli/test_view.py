@@ -1,6 +1,10 @@
 """``drake-formation view`` writes pages, of scenarios and of results, and says what it cannot show."""
 
+import socket
 from pathlib import Path
+
+import pytest
+import xarray as xr
 
 SHORT = ["--set", "aggregation.duration=1", "--set", "transport.duration=2"]
 
@@ -33,3 +37,21 @@ def test_a_place_that_cannot_be_written_is_refused_before_anything_runs(cli):
     status, _, err = cli("view", "line", "--html", "nowhere/view.html")
     assert status == 2
     assert "nowhere/view.html" in err
+
+
+def test_a_port_that_is_taken_is_named(cli):
+    with socket.socket() as taken:
+        taken.bind(("localhost", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        status, _, err = cli("view", "line", *SHORT, "--no-browser", "--port", port)
+    assert status == 2
+    assert f"port {port}" in err
+
+
+@pytest.mark.parametrize("how", [["--html", "view.html"], ["--no-browser"]])
+def test_a_file_that_is_no_result_is_refused(cli, how):
+    xr.Dataset({"position": 1.0}).to_netcdf("other.nc")
+    status, _, err = cli("view", "other.nc", *how)
+    assert status == 2
+    assert "not a result of this version" in err

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from pydrake.geometry import Meshcat, MeshcatParams
 
+from drake_formation.viz.errors import PortError
 from drake_formation.viz.links import PRESSED, STRETCHED, largest_strain, moving_links
 from drake_formation.viz.playback import OLD, Playback
 from drake_formation.viz.view.link_drawer import CHANNEL, SILENT
@@ -61,13 +62,18 @@ def quiet_meshcat(port: int | None = None) -> Iterator[Meshcat]:
     """A Meshcat for this machine alone, without Drake's line on where it listens.
 
     Raises:
-        RuntimeError: the port is taken.
+        PortError: the port is taken, or there is none that is free.
     """
     log = logging.getLogger("drake")
     level = log.level
     log.setLevel(logging.WARNING)
     try:
-        yield Meshcat(MeshcatParams(host="localhost", port=port, show_stats_plot=False))
+        try:
+            meshcat = Meshcat(MeshcatParams(host="localhost", port=port, show_stats_plot=False))
+        except RuntimeError as error:
+            where = "any port from 7000 to 7999" if port is None else f"port {port}"
+            raise PortError(f"cannot serve at {where}: is it taken?") from error
+        yield meshcat
     finally:
         log.setLevel(level)
 

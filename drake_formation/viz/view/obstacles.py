@@ -56,4 +56,4 @@ def prism(outline: Array, height: float) -> Mesh:
     ]
     corners = [f"v {x:.6f} {y:.6f} {z:.6f}" for x, y, z in np.concatenate(faces)]
     triangles = [f"f {k} {k + 1} {k + 2}" for k in range(1, 3 * len(faces), 3)]
-    return Mesh(InMemoryMesh(MemoryFile("\n".join([*corners, *triangles, ""]), ".obj", "prism")))
+    return Mesh(InMemoryMesh(mesh_file=MemoryFile("\n".join([*corners, *triangles, ""]), ".obj", "prism")))

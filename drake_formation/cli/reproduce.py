@@ -14,6 +14,13 @@ from drake_formation.terminal import FAILED_RUN, WRONG_INPUT, say, stop
 @app.command()
 def reproduce(
     only: Annotated[list[str] | None, typer.Option(metavar="NAME", help="A part, such as table3, fig7 or fit.")] = None,
+    cell: Annotated[
+        str | None,
+        typer.Option(
+            metavar="TABLE:MATERIAL:GAIN",
+            help="Run one cell of the tables again by both readings and print it, such as table5:steel:1e4.",
+        ),
+    ] = None,
     out: Annotated[
         Path, typer.Option(parser=path, metavar="FOLDER", help="For the report and the runs it is made of.")
     ] = Path("out/paper"),
@@ -24,6 +31,9 @@ def reproduce(
     from drake_formation.simulation import SimulationError
     from drake_formation.sweep import SweepStoppedError
 
+    if cell is not None:
+        _rerun(cell)
+        return
     with runs_bar("study") as progress:
         try:
             written = run_study(out, only or (), progress)
@@ -33,3 +43,15 @@ def reproduce(
             stop(str(error), FAILED_RUN)
     where = f"Report in {written.folder / 'report.html'}, tables in {written.folder / 'tables.csv'}."
     say("\n".join([*written.remarks(), where]))
+
+
+def _rerun(cell: str) -> None:
+    from drake_formation.paper.rerun import rerun
+    from drake_formation.simulation import SimulationError
+
+    try:
+        say(rerun(cell))
+    except ValueError as error:
+        stop(str(error), WRONG_INPUT)
+    except SimulationError as error:
+        stop(str(error), FAILED_RUN)

@@ -5,8 +5,8 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from drake_formation.markdown import markdown_table
-from drake_formation.measuring import metrics
-from drake_formation.paper.curves import draw_transport, phase, since_hand_off
+from drake_formation.paper.curves import phase, since_hand_off
+from drake_formation.paper.paths import draw_transport
 from drake_formation.paper.runs import transport
 from drake_formation.paper.store import Store
 from drake_formation.scenario import Scenario, load_scenario, with_overrides
@@ -36,7 +36,7 @@ def comparison(store: Store) -> str:
     rows = []
     for name in REFERENCES:
         result = store[referenced(name)]
-        figures = metrics(result)
+        figures = store.measured(referenced(name))
         lag = float(length(phase(result, 1)["tracking_error"]).max())
         errors = [100 * max(figures.tracking_error_m), 100 * figures.consensus_error_m]
         rows.append([name, f"{figures.peak_force_n:.1f}", f"{errors[0]:.1f}", f"{errors[1]:.2f}", f"{lag:.2f}"])

@@ -45,11 +45,15 @@ def cell_rows(cells: list[Cell]) -> tuple[list[str], list[list[str]], list[str]]
 def shown(cell: Cell, reading: str, reasons: list[str]) -> str:
     """``13.9 (+11 %)``, with the mark of a calibration, and the number of the reason where it does not agree."""
     value = cell.ours[reading]
-    text = f"{value:.3g}" if value < 1000 else f"{value:.0f}"
     mark = MARK if cell.set_by.get(reading) else ""
     off = f"{100 * (value / cell.published - 1):+.0f} %"
     miss = f", differs: {reasons.index(cell.reasons[reading]) + 1}" if reading in cell.reasons else ""
-    return f"{text}{mark} ({off}{miss})"
+    return f"{number(value)}{mark} ({off}{miss})"
+
+
+def number(value: float) -> str:
+    """A number of a table, to three digits or the unit."""
+    return f"{value:.3g}" if value < 1000 else f"{value:.0f}"
 
 
 def agreement_part() -> Part:

@@ -29,9 +29,9 @@ def any_stiffness(reading: Reading, store: Store) -> Claim:
         ),
         evidence=(
             f"at δ = {LOW:g} N/m obstacles deform the formation by at most {_cm(figures[worst].deformation_m)} "
-            f"({', '.join(worst)}). The largest ‖e_i‖ are {errors}: what the hand-off leaves, up to "
-            f"{_cm(max(its.residual_m for its in figures.values()))}, and the turning of the whole formation, up to "
-            f"{_cm(turned)}. The condition is a settled hand-off, and that turning counts as keeping"
+            f"({', '.join(worst)}). The largest ‖e_i‖ are {errors}; of these the hand-off leaves up to "
+            f"{_cm(max(its.residual_m for its in figures.values()))}, and up to {_cm(turned)} is the turning of the "
+            "whole formation. The condition is a settled hand-off, and that turning counts as keeping"
         ),
         source=f"all transports at δ = {LOW:g}",
     )
@@ -67,7 +67,7 @@ def diminishing_returns(reading: Reading, store: Store) -> Claim:
         claim="returns of δ diminish while the effort rises (Sec. 5.1.2)",
         verdict=HOLDS if holds else FAILS,
         evidence=(
-            f"e falls by {_cm(first)} from δ = {LOCAL:g} to {LOW:g} and by {100 * second:.3f} cm from there to "
+            f"e falls by {_cm(first)} from δ = {LOCAL:g} to {LOW:g} and by {_cm(second, 3)} from there to "
             f"{HIGH:g}; the peak force goes {low.peak_force_n:.1f}, {mid.peak_force_n:.0f}, {high.peak_force_n:.0f} N"
         ),
         source="line, rubber",
@@ -152,4 +152,4 @@ def _figures(reading: Reading, store: Store, name: str, material: str, delta: fl
 
 
 def _cm(length: float, digits: int = 2) -> str:
-    return f"{100 * length:.{digits}f} cm"
+    return f"{round(100 * length, digits) + 0.0:.{digits}f} cm"  # no -0.00

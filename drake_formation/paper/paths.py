@@ -10,7 +10,7 @@ from drake_formation.paper.readings import PROBABLE
 from drake_formation.paper.runs import GAINS, MATERIALS
 from drake_formation.paper.store import Store
 from drake_formation.vectors import length_of
-from drake_formation.viz.figures import draw_formation, draw_obstacles, robot_colours, snapshot_times
+from drake_formation.viz.figures import OBSTACLE_COLOUR, draw_formation, robot_colours, snapshot_times
 
 SHOWN = 0.8
 """How large the largest deviation is drawn, at the least (m): as large as a formation nearly, on a way of 25."""
@@ -18,7 +18,7 @@ SHOWN = 0.8
 
 def transport_paths(formation: str, store: Store) -> Figure:
     """Paths past the obstacles for both materials and three gains, and where obstacles push robots out of shape."""
-    figure = Figure(figsize=(12, 7), layout="constrained")
+    figure = Figure(figsize=(13, 5.6), layout="constrained")
     panels = figure.subplots(len(GAINS), len(MATERIALS), sharex=True, sharey=True)
     for column, (material, stiffness) in enumerate(MATERIALS.items()):
         for row, delta in enumerate(GAINS):
@@ -26,7 +26,7 @@ def transport_paths(formation: str, store: Store) -> Figure:
             larger = exaggeration(carried)
             axes = panels[row, column]
             draw_transport(axes, exaggerated(carried, larger))
-            title = f"{material}, k = {stiffness:g} N/m, δ = {delta:g} N/m; deviation drawn {larger} times"
+            title = f"{material}, k = {stiffness:g} N/m, δ = {delta:g} N/m; deviation drawn {larger} times as large"
             axes.set_title(title, fontsize="medium")
         panels[-1, column].set_xlabel("x (m)")
     for axes in panels[:, 0]:
@@ -46,11 +46,12 @@ def exaggerated(carried: xr.Dataset, larger: int) -> xr.Dataset:
 
 
 def draw_transport(axes: Axes, carried: xr.Dataset) -> None:
-    """Paths, obstacles and snapshots of one transport."""
+    """Paths, obstacles and snapshots of one transport; obstacles as points, as their fields may be wider than all."""
     for robot, colour in robot_colours(carried).items():
         x, y = carried["position"].sel(robot=robot).values.T
         axes.plot(x, y, color=colour, linewidth=1.2)
-    draw_obstacles(axes, carried)
+    for x, y in carried["obstacle_position"].values:
+        axes.plot([x], [y], "X", color=OBSTACLE_COLOUR, markersize=7)
     for time in snapshot_times(carried):
         draw_formation(axes, carried.sel(time=time))
     axes.set(aspect="equal")

@@ -9,7 +9,8 @@ from drake_formation.paper.readings import PRINTED, PROBABLE
 from drake_formation.paper.runs import AGGREGATION_GAINS, FORMATIONS, GAINS, MATERIALS
 from drake_formation.paper.section import Part, Section
 from drake_formation.paper.simulated import SIMULATED
-from drake_formation.scenario import Scenario, resolve
+from drake_formation.scenario import Scenario, resolve, with_overrides
+from drake_formation.vectors import least_length
 
 Value = Callable[[Scenario], object]
 
@@ -35,7 +36,7 @@ SCENARIOS: tuple[tuple[str, Value, str, str], ...] = (
     ("Q, R", lambda s: f"{s.tracking.Q:g} I4, {s.tracking.R:g} I2", "", "published"),
     ("side of line and square", _side, "m", "published"),
     ("octagon, across flats", lambda s: getattr(s.formation, "width", None), "m",
-     "inferred: at side 1 m the top edge would pass 0.35 m from an obstacle"),
+     "inferred: at side 1 m the top edge would pass {passes} from an obstacle"),
     ("distance D", lambda s: float(np.linalg.norm(resolve(s).goal - resolve(s).centre)), "m",
      "inferred from the peak force at δ = 0"),
     ("obstacles", lambda s: "; ".join(f"({o.position[0]:g}, {o.position[1]:g})" for o in s.avoidance.obstacles), "m",
@@ -60,12 +61,21 @@ def provenance_part() -> Part:
 def provenance() -> str:
     """The parameters as a Markdown table."""
     cases = [[reading.transport(name, "rubber", 0.0) for name in FORMATIONS] for reading in (PRINTED, PROBABLE)]
+    passes = f"{side_of_a_metre():.2f} m"
     rows = [
-        [name, *(_with_unit(map(value, scenarios), unit) for scenarios in cases), source]
+        [name, *(_with_unit(map(value, scenarios), unit) for scenarios in cases), source.format(passes=passes)]
         for name, value, unit, source in SCENARIOS
     ]
     heading = ["parameter", PRINTED.title, PROBABLE.title, "provenance"]
     return markdown_table(heading, [*_of_cells(), *rows, *_of_aggregation(cases[0])])
+
+
+def side_of_a_metre() -> float:
+    """How far from an obstacle an octagon of side 1 m would pass on its way (m)."""
+    octagon = {"shape": "polygon", "robots": 8, "side": 1.0}
+    formation = resolve(with_overrides(PRINTED.transport("octagon", "rubber", 0.0), {"formation": octagon}))
+    begin = (formation.centre + formation.slots)[:, None] - formation.obstacles[:, :2]
+    return float(least_length(begin, np.broadcast_to(formation.goal - formation.centre, begin.shape)).min())
 
 
 def _of_cells() -> list[list[str]]:

@@ -12,12 +12,13 @@ from drake_formation.paper.claims import claims_part
 from drake_formation.paper.explanations import explanations_part
 from drake_formation.paper.provenance import provenance_part
 from drake_formation.paper.readings import PROBABLE, READINGS
+from drake_formation.paper.rivals import rivals_part
 from drake_formation.paper.runs import AGGREGATION_GAINS, CASES, MATERIALS, TOPOLOGIES, aggregation
 from drake_formation.paper.section import Part, Runs, Section, figure, no_runs, picture
 from drake_formation.paper.sensitivity import sensitivity, sensitivity_runs
 from drake_formation.paper.store import Store
 from drake_formation.paper.trajectories import comparison, s_curve, s_curve_figure, trajectory_runs
-from drake_formation.paper.worth import alternatives_part, hold_out_part, ingredients_part
+from drake_formation.paper.worth import hold_out_part, ingredients_part
 from drake_formation.scenario import Scenario, load_scenario
 
 
@@ -140,7 +141,7 @@ PARTS: dict[str, Part] = {
     "claims": claims_part(),
     "ingredients": ingredients_part(),
     "fit": hold_out_part(),
-    "alternatives": alternatives_part(),
+    "alternatives": rivals_part(),
     "explanations": explanations_part(),
     "trajectories": Part(make=_trajectories, runs=trajectory_runs),
     "sensitivity": Part(make=_sensitivity, measured=sensitivity_runs),

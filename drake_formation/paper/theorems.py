@@ -123,7 +123,7 @@ def invariant_mean(store: Store) -> Claim:
         claim="proof of Theorem 2: Σ u_g = 0, thus x̄ is invariant and ė = ẋ",
         verdict=HOLDS if moved < MARGIN else FAILS,
         evidence=(
-            f"Σ u_g stays below {total:.0e} N, but x̄ moves by {moved:.2f} m in {duration:g} s where the robots move "
+            f"Σ u_g is {total:.1g} N throughout, but x̄ moves by {moved:.2f} m in {duration:g} s where the robots move "
             f"at {DRIFT[0]:g} m/s: with Σ u_g = 0 the mean velocity is invariant, and the mean position only where "
             "that is 0. The conclusion on e does not need it"
         ),

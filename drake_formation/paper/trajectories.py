@@ -11,6 +11,7 @@ from drake_formation.paper.runs import transport
 from drake_formation.paper.store import Store
 from drake_formation.scenario import Scenario, load_scenario, with_overrides
 from drake_formation.vectors import length
+from drake_formation.viz.figures import draw_obstacles
 
 REFERENCES: dict[str, dict[str, Any]] = {
     "set point": {},
@@ -55,6 +56,7 @@ def s_curve_figure(store: Store) -> Figure:
     figure = Figure(figsize=(10, 7), layout="constrained")
     plane, springs = figure.subplots(2, height_ratios=[2, 1])
     draw_transport(plane, carried)
+    draw_obstacles(plane, carried)
     plane.set(xlabel="x (m)", ylabel="y (m)")
     elongation = 100 * abs(carried["spring_length"] - carried["rest_length"]).max("spring")
     springs.plot(since_hand_off(carried), elongation)

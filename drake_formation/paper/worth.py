@@ -6,14 +6,27 @@ from drake_formation.markdown import markdown_table
 from drake_formation.measuring import Metrics
 from drake_formation.paper.fit import fit
 from drake_formation.paper.readings import PRINTED, PROBABLE, Run
-from drake_formation.paper.runs import CASES, FORMATIONS
+from drake_formation.paper.runs import FORMATIONS
 from drake_formation.paper.score import Score, score
 from drake_formation.paper.section import Part, Section
-from drake_formation.paper.simulated import SIMULATED, BySettings, changed
+from drake_formation.paper.simulated import SIMULATED, changed
 from drake_formation.paper.store import Store
 from drake_formation.paper.tables import Entry, all_entries, transports
-from drake_formation.paper.variants import LAWS, Variant, alternatives, by, ingredients
+from drake_formation.paper.variants import LAWS, by, ingredients
 
+FREE = (
+    "ρ0",
+    "η",
+    "D of two robots",
+    "D of more",
+    "T_agg of two robots",
+    "T_agg of four",
+    "T_agg of eight",
+    "that one robot feels an obstacle",
+    "which does in the octagon",
+    "the octagon's size",
+)
+"""What the paper does not give of any reading with a soft, wide push."""
 AS_GOOD = 3
 """So many alternatives are looked at closely."""
 
@@ -90,72 +103,6 @@ def _held_out(store: Store) -> str:
         "(the laws, who feels an obstacle and T_agg are those of the reading, and were chosen with these cells seen):",
         markdown_table(heading, rows),
     ])  # fmt: skip
-
-
-def alternatives_part() -> Part:
-    """Other readings that explain as much."""
-    return Part(
-        make=lambda store: Section(title="Readings that are as good", text=_alternatives(store)),
-        measured=lambda: [run for settings in alternatives().values() for run in transports(by(settings))],
-    )
-
-
-def _alternatives(store: Store) -> str:
-    scores = {key: _score(Variant(by(settings)).entries(store)) for key, settings in alternatives().items()}
-    ranked = sorted(scores, key=lambda key: (-scores[key].agree, -scores[key].close))
-    rows = [_alternative(key, scores[key], alternatives()[key]) for key in ranked]
-    heading = [
-        "virtual springs",
-        "ρ0 (m)",
-        "η (N m²), fitted",
-        "δ while gathering",
-        "agree",
-        "close",
-        "median difference",
-    ]
-    best = {_name(key): alternatives()[key] for key in ranked[:AS_GOOD]}
-    return "\n\n".join([
-        f"Laws, widths of the field and ways to gather, {len(scores)} in all, each with η fitted to the line's error "
-        "alone; T_agg is that of the reading:",
-        markdown_table(heading, rows),
-        f"The best {AS_GOOD} differ by {scores[ranked[0]].agree - scores[ranked[AS_GOOD - 1]].agree} cells, and the "
-        "tables cannot choose between them. What the paper does not print and would tell them apart, by how far they "
-        "differ:",
-        _apart(store, best),
-    ])  # fmt: skip
-
-
-def _alternative(key: tuple[str, float, float], its: Score, settings: BySettings) -> list[str]:
-    law, width, gathering = key
-    numbers = [f"{width:g}", f"{settings['line'].gain:.3g}", f"{gathering:g} N/m"]
-    return [law, *numbers, f"**{its}**", str(its.close), f"{100 * its.off:.1f} %"]
-
-
-def _apart(store: Store, best: dict[str, BySettings]) -> str:
-    """For each figure that is not printed, the transport in which the readings differ most."""
-    rows = []
-    for name, figure in UNPRINTED.items():
-        values = {
-            case: [figure(_figures(store, settings, case)) for settings in best.values()]
-            for case in CASES
-            if case[0] == "octagon" or "ε" not in name
-        }
-        case = max(values, key=lambda case: max(values[case]) / min(values[case]))
-        formation, material, delta = case
-        spread = max(values[case]) / min(values[case])
-        shown = [f"{value:.3g}" for value in values[case]]
-        rows.append((spread, [name, f"{formation}, {material}, δ = {delta:g}", *shown, f"{spread:.2f}"]))
-    heading = ["figure", "transport", *best, "largest by least"]
-    return markdown_table(heading, [row for _, row in sorted(rows, key=lambda row: -row[0])])
-
-
-def _figures(store: Store, settings: BySettings, case: tuple[str, str, float]) -> Metrics:
-    return store.measured(by(settings)(*case))
-
-
-def _name(key: tuple[str, float, float]) -> str:
-    law, width, gathering = key
-    return f"{law}, ρ0 = {width:g} m, gathering at {gathering:g} N/m"
 
 
 def _score(entries: list[Entry]) -> Score:

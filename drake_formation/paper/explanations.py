@@ -56,9 +56,9 @@ def _text(store: Store) -> str:
         "then move at the most, and which cells come to agree or no longer do:",
         _solvers(store),
         "**The hand-off.** With consensus the peak force is how far the ringing virtual springs are out of place at "
-        "the hand-off, times δ, and T_agg is not printed. Moments at which the forces of a formation with rubber agree, of "
-        f"the {len(MOMENTS)} full seconds from {MOMENTS[0]:g} to {MOMENTS[-1]:g} s; so good a choice is there by "
-        "chance, and agreeing forces are no evidence:",
+        "the hand-off, times δ, and T_agg is not printed. Moments at which the forces of a formation with rubber "
+        f"agree, of the {len(MOMENTS)} full seconds from {MOMENTS[0]:g} to {MOMENTS[-1]:g} s; where T_agg is free, "
+        "agreeing forces are no evidence:",
         _moments(store),
     ])  # fmt: skip
 

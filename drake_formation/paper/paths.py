@@ -18,7 +18,7 @@ SHOWN = 0.8
 
 def transport_paths(formation: str, store: Store) -> Figure:
     """Paths past the obstacles for both materials and three gains, and where obstacles push robots out of shape."""
-    figure = Figure(figsize=(13, 5.6), layout="constrained")
+    figure = Figure(figsize=(13, 4.8), layout="constrained")
     panels = figure.subplots(len(GAINS), len(MATERIALS), sharex=True, sharey=True)
     for column, (material, stiffness) in enumerate(MATERIALS.items()):
         for row, delta in enumerate(GAINS):
@@ -54,5 +54,6 @@ def draw_transport(axes: Axes, carried: xr.Dataset) -> None:
         axes.plot([x], [y], "X", color=OBSTACLE_COLOUR, markersize=7)
     for time in snapshot_times(carried):
         draw_formation(axes, carried.sel(time=time))
+    axes.margins(y=0.15)
     axes.set(aspect="equal")
     axes.grid(alpha=0.3)

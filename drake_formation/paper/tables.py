@@ -8,7 +8,7 @@ from drake_formation.measuring import Metrics
 from drake_formation.paper.published import published
 from drake_formation.paper.readings import READINGS, Place, Run
 from drake_formation.paper.reasons import reason
-from drake_formation.paper.runs import CASES
+from drake_formation.paper.runs import CASES, MATERIALS
 from drake_formation.paper.score import AGREES, agrees
 from drake_formation.paper.store import Measures, Store
 from drake_formation.scenario import Scenario
@@ -97,7 +97,7 @@ def table1() -> list[Cell]:
             column=name,
             unit="N/m",
             published=printed,
-            ours={key: reading.transport("line", name, 0.0).springs.stiffness for key, reading in READINGS.items()},
+            ours=dict.fromkeys(READINGS, MATERIALS[name]),
         )
         for name, printed in published()["materials"].items()
     ]

@@ -165,6 +165,12 @@ def test_reproduce_names_the_nearest_part(cli):
     assert "did you mean 'table3'" in err
 
 
+def test_reproduce_refuses_a_cell_that_is_not_there(cli):
+    status, _, err = cli("reproduce", "--cell", "table5:wood:0")
+    assert status == 2
+    assert "rubber, steel" in err
+
+
 def test_parts_are_listed_with_their_packages(cli):
     status, out, _ = cli("parts")
     assert status == 0

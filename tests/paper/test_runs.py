@@ -24,3 +24,8 @@ def test_topologies_are_connected_and_have_the_channels_they_are_named_after():
 def test_aggregation_keeps_the_object_of_the_shipped_scenario():
     assert aggregation("line", 5.0).consensus.delta == 5.0
     assert aggregation("line", 0.0).springs.stiffness == MATERIALS["rubber"]
+
+
+@pytest.mark.parametrize(("name", "stiffness"), MATERIALS.items())
+def test_runs_have_the_stiffness_of_table_1(name, stiffness):
+    assert transport("line", name, 0.0).springs.stiffness == stiffness

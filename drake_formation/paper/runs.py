@@ -23,7 +23,7 @@ TOPOLOGIES: dict[str, str | list[list[int]]] = {
 
 
 # The virtual springs ring for a thousand radians before the hand-off, and the peak force is read off their phase then.
-ACCURATE = {"simulator.accuracy": 1e-9, "simulator.max_step_size": 0.05}
+ACCURATE = {"simulator.accuracy": 1e-8, "simulator.max_step_size": 0.05}
 
 SENSING = {"avoidance.sensing": "nearest"}
 """Sec. 5.1: an obstacle can only be detected by the nearest robot; the shipped scenarios leave it at all in range."""

@@ -16,9 +16,6 @@ from drake_formation.paper.runs import ACCURATE, MATERIALS, shipped
 from drake_formation.scenario import Scenario, with_overrides
 from drake_formation.simulation import simulate
 
-FROM_HAND_OFF = ACCURATE | {"simulator.accuracy": 1e-8}
-"""There is no long ringing before the hand-off to be followed."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
@@ -86,7 +83,7 @@ def handed_over(formation: str, settings: Settings, material: str, delta: float)
         "avoidance.assigned": list(settings.assigned) if settings.sensing == "assigned" else [],
     }
     begun = hand_off(formation, gathering, settings.duration)
-    return with_overrides(shipped(formation), FROM_HAND_OFF | overrides | begun)
+    return with_overrides(shipped(formation), ACCURATE | overrides | begun)
 
 
 @cache

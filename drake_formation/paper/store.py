@@ -21,7 +21,7 @@ from drake_formation.sweep.processes import Processes, WorkerDiedError
 from drake_formation.sweep.work import versions
 
 # Drake 1.51 leaks Python systems; workers are replaced before that matters.
-RUNS_PER_WORKER = 32
+RUNS_PER_WORKER = 128
 
 RESULT, FIGURES = ".nc", ".json"
 """Kinds of files, by their suffixes: a run's labelled result, and what is measured of it."""

@@ -3,11 +3,12 @@
 from collections.abc import Iterable
 
 from drake_formation.markdown import markdown_table
+from drake_formation.paper.quantities import TABLES
 from drake_formation.paper.readings import READINGS
 from drake_formation.paper.score import AGREES, CLOSE, Score, score
 from drake_formation.paper.section import Part, Section
 from drake_formation.paper.store import Store
-from drake_formation.paper.tables import TABLES, Cell, Entry, all_entries, table, table_runs, transports
+from drake_formation.paper.tables import Cell, Entry, all_entries, table, table_runs, transports
 
 MARK = "°"
 """Marks a number of a reading that set one of its parameters."""

@@ -1,41 +1,17 @@
 """Tables 1-6 of the paper: each cell as published and by both readings, and why it differs where it does."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
-from drake_formation.measuring import Metrics
 from drake_formation.paper.published import published
+from drake_formation.paper.quantities import TABLES, Measure, Quantity
 from drake_formation.paper.readings import READINGS, Place, Run
 from drake_formation.paper.reasons import reason
 from drake_formation.paper.runs import CASES, MATERIALS
 from drake_formation.paper.score import AGREES, agrees
 from drake_formation.paper.store import Measures, Store
 from drake_formation.scenario import Scenario
-
-Measure = Callable[[Metrics], list[float]]
-"""The numbers of a cell, one or one a robot, in the table's unit."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Quantity:
-    """A block of cells: one quantity of a formation for both materials and three gains.
-
-    Attributes:
-        table: such as ``Table 3``.
-        formation: shipped scenario.
-        key: its key in ``published.yaml``.
-        row: what is printed before the gain.
-        unit: as in the paper; its "%" reads as cm.
-        measure: what of a run's figures it is.
-    """
-
-    table: str
-    formation: str
-    key: str
-    row: str
-    unit: str
-    measure: Measure
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -156,56 +132,6 @@ def rerun_command(table: str, material: str, delta: float) -> str:
     return f"drake-formation reproduce --cell {table.lower().replace(' ', '')}:{material}:{delta:g}"
 
 
-def _errors(table: str, formation: str) -> Quantity:
-    return Quantity(
-        table=table,
-        formation=formation,
-        key="consensus_error",
-        row="largest ‖e_i‖",
-        unit="cm",
-        measure=lambda figures: [100 * figures.consensus_error_m],
-    )
-
-
-def _forces(table: str, formation: str) -> Quantity:
-    return Quantity(
-        table=table,
-        formation=formation,
-        key="peak_force",
-        row="largest ‖u_i‖",
-        unit="N",
-        measure=lambda figures: [figures.peak_force_n],
-    )
-
-
-TABLES: dict[str, tuple[Quantity, ...]] = {
-    "table2": (
-        Quantity(
-            table="Table 2",
-            formation="line",
-            key="tracking_error",
-            row="‖ε_i‖",
-            unit="cm",
-            measure=lambda figures: [100 * error for error in figures.tracking_error_m],
-        ),
-    ),
-    "table3": (_errors("Table 3", "line"), _forces("Table 3", "line")),
-    "table4": (
-        Quantity(
-            table="Table 4",
-            formation="quadrilateral",
-            key="tracking_error",
-            row="‖ε‖ of all robots",
-            unit="cm",
-            measure=lambda figures: [100 * figures.stacked_tracking_error_m],
-        ),
-    ),
-    "table5": (_errors("Table 5", "quadrilateral"), _forces("Table 5", "quadrilateral")),
-    "table6": (_errors("Table 6", "octagon"), _forces("Table 6", "octagon")),
-}
-"""What each table is made of; Table 1 needs no run."""
-
-
 def transports(run: Run) -> list[Scenario]:
     """All cells' transports of a reading."""
     return [run(*case) for case in CASES]
@@ -239,8 +165,3 @@ def all_entries(store: Store, run: Run, measures: Mapping[str, Measure] = Mappin
         for quantity in TABLES[name]
         for entry in entries(quantity, store, run, measures.get(quantity.table))
     ]
-
-
-def largest_robot(figures: Metrics) -> list[float]:
-    """Table 4 read as Table 2: the largest tracking error of any robot (cm)."""
-    return [100 * max(figures.tracking_error_m)]

@@ -6,10 +6,11 @@ from functools import cache
 
 from drake_formation.paper import runs
 from drake_formation.paper.fit import fit
+from drake_formation.paper.quantities import largest_robot
 from drake_formation.paper.readings import PRINTED, PROBABLE, Run
 from drake_formation.paper.simulated import SIMULATED, BySettings, changed, handed_over
 from drake_formation.paper.store import Store
-from drake_formation.paper.tables import Entry, all_entries, largest_robot
+from drake_formation.paper.tables import Entry, all_entries
 from drake_formation.scenario import Scenario, with_overrides
 
 RANGES = (4.0, 6.0, 8.0, 12.0)

@@ -5,9 +5,10 @@ from same_figures import SameFigures
 
 from drake_formation.measuring import Metrics
 from drake_formation.paper.published import published
+from drake_formation.paper.quantities import TABLES, largest_robot
 from drake_formation.paper.readings import READINGS
 from drake_formation.paper.runs import CASES, GAINS, MATERIALS
-from drake_formation.paper.tables import TABLES, all_entries, largest_robot, table, table_runs, transports
+from drake_formation.paper.tables import all_entries, table, table_runs, transports
 
 
 def test_table_1_is_what_the_runs_use():

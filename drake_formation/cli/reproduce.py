@@ -14,6 +14,13 @@ from drake_formation.terminal import FAILED_RUN, WRONG_INPUT, say, stop
 @app.command()
 def reproduce(
     only: Annotated[list[str] | None, typer.Option(metavar="NAME", help="A part, such as table3, fig7 or fit.")] = None,
+    cell: Annotated[
+        str | None,
+        typer.Option(
+            metavar="TABLE:MATERIAL:GAIN",
+            help="Run one cell of the tables again by both readings and print it, such as table5:steel:1e4.",
+        ),
+    ] = None,
     out: Annotated[
         Path, typer.Option(parser=path, metavar="FOLDER", help="For the report and the runs it is made of.")
     ] = Path("out/paper"),
@@ -23,10 +30,13 @@ def reproduce(
     ] = False,
 ) -> None:
     """Rerun the paper's study and write a report: tables, figures and claims."""
-    if topologies and only:
-        stop("--only names parts of the report, which --topologies does not write; give one of them", WRONG_INPUT)
+    if [bool(only), cell is not None, topologies].count(True) > 1:
+        stop("--only, --cell and --topologies ask for different things; give one of them", WRONG_INPUT)
     if topologies:
         _topologies(out / "topologies")
+        return
+    if cell is not None:
+        _rerun(cell)
         return
     from drake_formation.paper.reproduce import reproduce as run_study
     from drake_formation.places import OutputError
@@ -60,3 +70,15 @@ def _topologies(folder: Path) -> None:
         f"{len(found)} graphs tried, in {folder / KEPT}. Their errors differ from those that the report uses by at "
         f"most {largest_difference(found):.1g} cm."
     )
+
+
+def _rerun(cell: str) -> None:
+    from drake_formation.paper.rerun import rerun
+    from drake_formation.simulation import SimulationError
+
+    try:
+        say(rerun(cell))
+    except ValueError as error:
+        stop(str(error), WRONG_INPUT)
+    except SimulationError as error:
+        stop(str(error), FAILED_RUN)

@@ -1,4 +1,4 @@
-"""Figures 4-19, 21 and 23 of the paper, redrawn from our runs."""
+"""Figures 4-18 and 23 of the paper, redrawn from our runs; transports as probably simulated."""
 
 import numpy as np
 import xarray as xr
@@ -6,17 +6,20 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from drake_formation.measuring import metrics
-from drake_formation.paper.runs import AGGREGATION_GAINS, GAINS, MATERIALS, TOPOLOGIES, aggregation, topology, transport
+from drake_formation.paper.readings import PROBABLE, READINGS
+from drake_formation.paper.runs import AGGREGATION_GAINS, GAINS, MATERIALS, TOPOLOGIES, aggregation
 from drake_formation.paper.store import Store
 from drake_formation.vectors import length
-from drake_formation.viz.figures import draw_formation, robot_colours, snapshot_times
-from drake_formation.viz.obstacles import draw_obstacles
+from drake_formation.viz.figures import robot_colours
 
 Array = NDArray[np.float64]
 
 STYLES = dict(zip(GAINS, ("-", "--", ":"), strict=True))
 COLOURS = {"rubber": "tab:blue", "steel": "tab:red"}
+PIXELS = 400
+"""Columns that a band is resolved to, no more than an axes has pixels across."""
+FARTHEST = "largest ‖e_i‖"
+"""What the consensus error is in tables and figures: that of the robot farthest off."""
 
 
 def aggregation_paths(formation: str, store: Store) -> Figure:
@@ -55,41 +58,13 @@ def aggregation_positions(formation: str, store: Store) -> Figure:
 
 
 def aggregation_errors(formation: str, store: Store) -> Figure:
-    """Norm of the consensus error of all robots for three gains (Figs. 6 and 14)."""
-    figure, axes = _panel("‖e‖ (m)")
+    """Consensus error of the robot farthest off for three gains (Figs. 6 and 14)."""
+    figure, axes = _panel(f"{FARTHEST} (m)")
     for delta in AGGREGATION_GAINS:
         gathering = phase(store[aggregation(formation, delta)], 0)
-        axes.plot(gathering["time"], whole_error(gathering), label=f"δ = {delta:g} N/m")
+        axes.plot(gathering["time"], farthest(gathering), label=f"δ = {delta:g} N/m")
     _finish(axes)
     return figure
-
-
-def transport_paths(formation: str, store: Store) -> Figure:
-    """Paths past the obstacles for both materials and three gains (Figs. 7, 15 and 21)."""
-    figure = Figure(figsize=(12, 5.6), layout="constrained")
-    panels = figure.subplots(len(GAINS), len(MATERIALS), sharex=True, sharey=True)
-    for column, (material, stiffness) in enumerate(MATERIALS.items()):
-        for row, delta in enumerate(GAINS):
-            axes = panels[row, column]
-            carried = phase(store[transport(formation, material, delta)], 1)
-            draw_transport(axes, carried)
-            axes.set_title(f"{material}, k = {stiffness:g} N/m, δ = {delta:g} N/m", fontsize="medium")
-        panels[-1, column].set_xlabel("x (m)")
-    for axes in panels[:, 0]:
-        axes.set_ylabel("y (m)")
-    return figure
-
-
-def draw_transport(axes: Axes, carried: xr.Dataset) -> None:
-    """Paths, obstacles and snapshots of one transport."""
-    for robot, colour in robot_colours(carried).items():
-        x, y = carried["position"].sel(robot=robot).values.T
-        axes.plot(x, y, color=colour, linewidth=1.2)
-    draw_obstacles(axes, carried, snapshot_times(carried))
-    for time in snapshot_times(carried):
-        draw_formation(axes, carried.sel(time=time))
-    axes.set(aspect="equal")
-    axes.grid(alpha=0.3)
 
 
 def velocities(formation: str, store: Store) -> Figure:
@@ -97,17 +72,13 @@ def velocities(formation: str, store: Store) -> Figure:
     figure = Figure(figsize=(9, 5), layout="constrained")
     panels = figure.subplots(2, len(MATERIALS), sharex=True, sharey="row")
     for column, material in enumerate(MATERIALS):
-        carried = phase(store[transport(formation, material, 0.0)], 1)
+        carried = phase(store[PROBABLE.transport(formation, material, 0.0)], 1)
         for row, axis in enumerate(("x", "y")):
             axes = panels[row, column]
             for robot, colour in robot_colours(carried).items():
-                axes.plot(
-                    since_hand_off(carried),
-                    carried["velocity"].sel(robot=robot, axis=axis),
-                    color=colour,
-                    linestyle="-" if robot % 2 else "--",
-                    label=f"robot {robot}",
-                )
+                style = "-" if robot % 2 else "--"
+                velocity = carried["velocity"].sel(robot=robot, axis=axis)
+                draw_band(axes, since_hand_off(carried), velocity, colour, style, f"robot {robot}")
             axes.set_ylabel(f"v_{axis} (m/s)" if column == 0 else "")
             axes.grid(alpha=0.3)
         panels[0, column].set_title(f"{material}, δ = 0", fontsize="medium")
@@ -122,7 +93,7 @@ def tracking_errors(formation: str, store: Store) -> Figure:
     single, gains = figure.subplots(2, sharex=True)
     for material, colour in COLOURS.items():
         for delta in GAINS:
-            carried = phase(store[transport(formation, material, delta)], 1)
+            carried = phase(store[PROBABLE.transport(formation, material, delta)], 1)
             error = 100 * length(carried["deviation"])
             label = f"{material}, δ = {delta:g}"
             gains.plot(since_hand_off(carried), error.max("robot"), color=colour, linestyle=STYLES[delta], label=label)
@@ -134,7 +105,7 @@ def tracking_errors(formation: str, store: Store) -> Figure:
     gains.set_title("largest of all robots", fontsize="medium")
     gains.set_xlabel("time since hand-off (s)")
     for axes in (single, gains):
-        axes.set_ylabel("‖ε‖ (cm)")
+        axes.set_ylabel("‖ε_i‖ (cm)")
         _finish(axes)
     return figure
 
@@ -143,20 +114,21 @@ def relative_distance(store: Store) -> Figure:
     """Distance d12 at δ = 0 for both materials (Fig. 10)."""
     figure, axes = _panel("d12 (m)", "time since hand-off (s)")
     for material, colour in COLOURS.items():
-        carried = phase(store[transport("line", material, 0.0)], 1)
-        axes.plot(since_hand_off(carried), carried["spring_length"].sel(spring="1-2"), color=colour, label=material)
+        carried = phase(store[PROBABLE.transport("line", material, 0.0)], 1)
+        distance = carried["spring_length"].sel(spring="1-2")
+        draw_band(axes, since_hand_off(carried), distance, colour, "-", material)
     _finish(axes)
     return figure
 
 
 def consensus_errors(formation: str, store: Store) -> Figure:
     """Consensus error of the robot farthest off for both materials and three gains (Figs. 11 and 18)."""
-    figure, axes = _panel("‖e‖ (cm), largest within each half second", "time since hand-off (s)")
+    figure, axes = _panel(f"{FARTHEST} (cm), within each half second", "time since hand-off (s)")
     for material, colour in COLOURS.items():
         for delta in GAINS:
-            carried = phase(store[transport(formation, material, delta)], 1)
-            time, error = envelope(carried, 100 * length(carried["consensus_error"]).max("robot"))
-            axes.plot(time, error, color=colour, linestyle=STYLES[delta], label=f"{material}, δ = {delta:g}")
+            carried = phase(store[PROBABLE.transport(formation, material, delta)], 1)
+            middles, _, highest = windows(since_hand_off(carried).values, 100 * farthest(carried).values, 0.5)
+            axes.plot(middles, highest, color=colour, linestyle=STYLES[delta], label=f"{material}, δ = {delta:g}")
     axes.set_yscale("log")
     axes.set_ylim(bottom=1e-3)
     _finish(axes)
@@ -164,18 +136,18 @@ def consensus_errors(formation: str, store: Store) -> Figure:
 
 
 def topology_bars(store: Store) -> Figure:
-    """Largest consensus error by communication topology and without communication (Fig. 23)."""
-    runs = {"local LQR": transport("quadrilateral", "rubber", 0.0)} | {name: topology(name) for name in TOPOLOGIES}
-    bars = {name: metrics(store[run]).consensus_error_m for name, run in runs.items()}
-    figure = Figure(figsize=(8, 4), layout="constrained")
-    axes = figure.subplots()
-    drawn = axes.bar(
-        list(bars), [100 * error for error in bars.values()], color=["0.6"] + ["tab:blue"] * len(TOPOLOGIES)
-    )
-    axes.bar_label(drawn, fmt="%.2f")
-    axes.margins(y=0.1)
-    axes.set_ylabel("largest ‖e‖ (cm)")
-    axes.tick_params("x", labelrotation=20)
+    """Largest consensus error by communication topology and without communication, by both readings (Fig. 23)."""
+    figure = Figure(figsize=(12, 4), layout="constrained")
+    for axes, reading in zip(figure.subplots(1, len(READINGS), sharey=True), READINGS.values(), strict=True):
+        local = reading.transport("quadrilateral", "rubber", 0.0)
+        runs = {"local LQR": local} | {name: reading.topology(name) for name in TOPOLOGIES}
+        errors = [100 * store.measured(run).consensus_error_m for run in runs.values()]
+        drawn = axes.bar(list(runs), errors, color=["0.6"] + ["tab:blue"] * len(TOPOLOGIES))
+        axes.bar_label(drawn, fmt="%.2f")
+        axes.margins(y=0.1)
+        axes.set_title(reading.title, fontsize="medium")
+        axes.tick_params("x", labelrotation=25)
+    figure.axes[0].set_ylabel(f"{FARTHEST} (cm)")
     return figure
 
 
@@ -189,17 +161,27 @@ def since_hand_off(carried: xr.Dataset) -> xr.DataArray:
     return carried["time"] - carried["time"][0]
 
 
-def envelope(carried: xr.Dataset, series: xr.DataArray, width: float = 0.5) -> tuple[Array, Array]:
-    """The largest value within each window of a width (s), and the windows' middles: fast ringing as one line."""
-    window = (since_hand_off(carried).values / width).astype(int)
+def farthest(result: xr.Dataset) -> xr.DataArray:
+    """Consensus error of the robot farthest off (m)."""
+    return length(result["consensus_error"]).max("robot")
+
+
+def windows(time: Array, series: Array, width: float) -> tuple[Array, Array, Array]:
+    """The least and the largest value within each window of a width (s), after the windows' middles."""
+    window = (time / width).astype(int)
     starts = np.flatnonzero(np.diff(window, prepend=-1))
-    return (window[starts] + 0.5) * width, np.maximum.reduceat(series.values, starts)
+    middles = (window[starts] + 0.5) * width
+    return middles, np.minimum.reduceat(series, starts), np.maximum.reduceat(series, starts)
 
 
-def whole_error(result: xr.Dataset) -> xr.DataArray:
-    """Norm of the consensus error of all robots together (m), the paper's ‖e‖."""
-    squared = (result["consensus_error"] ** 2).sum(["robot", "axis"])
-    return squared**0.5
+def draw_band(
+    axes: Axes, time: xr.DataArray, series: xr.DataArray, colour: str | tuple[float, ...], style: str, label: str
+) -> None:
+    """A signal as a line where it is slow, and as the band that it fills where it is faster than a pixel."""
+    width = float(time[-1]) / PIXELS
+    middles, lowest, highest = windows(time.values, series.values, width)
+    axes.plot(middles, 0.5 * (lowest + highest), color=colour, linestyle=style, label=label)
+    axes.fill_between(middles, lowest, highest, color=colour, alpha=0.3, linewidth=0)
 
 
 def _panel(label: str, time: str = "time (s)") -> tuple[Figure, Axes]:

@@ -1,14 +1,17 @@
-"""The one fitted number: the avoidance gain η, to the line's consensus error of 9.6 cm (rubber, δ = 0, ρ0 = 1.3 m)."""
+"""The fitted number: the avoidance gain η, to the line's consensus error with rubber and without consensus."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache
 
 from drake_formation.measuring import metrics
 from drake_formation.paper.published import published
 from drake_formation.paper.runs import transport
-from drake_formation.paper.store import Store
+from drake_formation.paper.simulated import Settings, handed_over
 from drake_formation.scenario import Scenario, with_overrides
+from drake_formation.simulation import simulate
 
-BRACKET = (20.0, 45.0)
+CASE = ("line", "rubber", 0.0)
+BRACKET = (0.5, 45.0)
 """Where η is looked for (N m²)."""
 TOLERANCE = 1e-3
 """To which η is found (N m²)."""
@@ -20,33 +23,47 @@ class Fit:
 
     Attributes:
         gain: η (N m²).
-        error: the consensus error it gives (m).
+        used: what the scenarios of the reading say (N m²).
+        range: ρ0 (m).
+        error: the consensus error the fitted gain gives (m).
         target: the published one (m).
         runs: how many runs it took.
     """
 
     gain: float
+    used: float
+    range: float
     error: float
     target: float
     runs: int
 
 
-def fit(store: Store) -> Fit:
-    """Find η by bracketing (Brent); one run for each try, kept in the store."""
+@cache
+def fit(settings: Settings | None = None) -> Fit:
+    """Find η by bracketing (Brent).
+
+    Args:
+        settings: of the line; None for the runs as printed.
+    """
     from scipy.optimize import root_scalar
 
-    target = published()["line"]["consensus_error"]["rubber"][0.0] / 100
-    found = root_scalar(
-        lambda gain: consensus_error(store, gain) - target, bracket=BRACKET, method="brentq", xtol=TOLERANCE
+    formation, material, delta = CASE
+    target = published()[formation]["consensus_error"][material][delta] / 100
+    error = cache(lambda gain: float(metrics(simulate(tried(settings, gain), engine="compiled")).consensus_error_m))
+    found = root_scalar(lambda gain: error(gain) - target, bracket=BRACKET, method="brentq", xtol=TOLERANCE)
+    used = (handed_over(CASE[0], settings, *CASE[1:]) if settings else transport(*CASE)).avoidance
+    return Fit(
+        gain=found.root,
+        used=used.gain,
+        range=used.range,
+        error=error(found.root),
+        target=target,
+        runs=error.cache_info().currsize,
     )
-    return Fit(gain=found.root, error=consensus_error(store, found.root), target=target, runs=found.function_calls)
 
 
-def consensus_error(store: Store, gain: float) -> float:
-    """Largest consensus error (m) of the line with rubber and without consensus, at an avoidance gain (N m²)."""
-    return float(metrics(store[tried(gain)]).consensus_error_m)
-
-
-def tried(gain: float) -> Scenario:
+def tried(settings: Settings | None, gain: float) -> Scenario:
     """The run at an avoidance gain (N m²)."""
-    return with_overrides(transport("line", "rubber", 0.0), {"avoidance.gain": gain})
+    if settings is None:
+        return with_overrides(transport(*CASE), {"avoidance.gain": gain})
+    return handed_over(CASE[0], replace(settings, gain=gain), *CASE[1:])

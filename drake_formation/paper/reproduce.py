@@ -5,10 +5,10 @@ from pathlib import Path
 
 from drake_formation.config.errors import nearest
 from drake_formation.paper.report import REPORT, RUNS, write_report
+from drake_formation.paper.section import Part
 from drake_formation.paper.store import Store
 from drake_formation.paper.study import PARTS
 from drake_formation.places import Written, make_folder, reserved, written
-from drake_formation.scenario import Scenario
 
 Progress = Callable[[int, int], None]
 """Called with how many of the missing runs are done, and how many there are."""
@@ -36,13 +36,15 @@ def reproduce(folder: Path, only: Sequence[str] = (), progress: Progress | None 
     make_folder(folder, REPORT)
     store = Store(folder / RUNS)  # kept whatever happens to the report
     with reserved(folder, REPORT) as place:
-        _run(store, [scenario for part in parts for scenario in part.runs()], progress)
+        _run(store, parts, progress)
         sections = [part.make(store) for part in parts]
         return written(place, lambda partial: write_report(partial, sections))
 
 
-def _run(store: Store, wanted: Sequence[Scenario], progress: Progress | None) -> None:
-    total, done = len(store.missing(wanted)), 0
+def _run(store: Store, parts: Sequence[Part], progress: Progress | None) -> None:
+    results = [scenario for part in parts for scenario in part.runs()]
+    missing = store.missing(results, [scenario for part in parts for scenario in part.measured()])
+    total, done = len(missing), 0
 
     def count() -> None:
         nonlocal done
@@ -52,7 +54,7 @@ def _run(store: Store, wanted: Sequence[Scenario], progress: Progress | None) ->
 
     if progress:
         progress(0, total)
-    store.run(wanted, count)
+    store.run(missing, count)
 
 
 def _hint(name: str) -> str:

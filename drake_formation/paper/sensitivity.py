@@ -5,7 +5,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from drake_formation.measuring import Metrics, metrics
+from drake_formation.measuring import Metrics
 from drake_formation.paper.runs import transport
 from drake_formation.paper.store import Store
 from drake_formation.scenario import Scenario, resolve, with_overrides
@@ -73,4 +73,4 @@ def sensitivity(store: Store) -> Figure:
 
 def measured(store: Store, parameter: str, value: float, delta: float) -> Metrics:
     """Metrics of one run of the figure."""
-    return metrics(store[varied(parameter, value, delta)])
+    return store.measured(varied(parameter, value, delta))

@@ -1,16 +1,19 @@
-"""Results of the study's runs, kept on disk so that no run is made twice."""
+"""Results and figures of the study's runs, kept on disk so that no run is made twice."""
 
 import hashlib
 import json
 import os
 import tempfile
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from pathlib import Path
+from typing import Protocol
 
 import xarray as xr
 
 from drake_formation.lowering.errors import LoweringError
+from drake_formation.measuring import Metrics
+from drake_formation.paper.measured import measured
 from drake_formation.scenario import Scenario, ScenarioError, resolve, to_yaml
 from drake_formation.simulation import SimulationError, simulate
 from drake_formation.sweep.errors import SweepStoppedError
@@ -18,7 +21,17 @@ from drake_formation.sweep.processes import Processes, WorkerDiedError
 from drake_formation.sweep.work import versions
 
 # Drake 1.51 leaks Python systems; workers are replaced before that matters.
-RUNS_PER_WORKER = 32
+RUNS_PER_WORKER = 128
+
+RESULT, FIGURES = ".nc", ".json"
+"""Kinds of files, by their suffixes: a run's labelled result, and what is measured of it."""
+
+
+class Measures(Protocol):
+    """What has the figures of runs."""
+
+    def measured(self, scenario: Scenario) -> Metrics:
+        """The figures of a scenario's run."""
 
 
 class Store:
@@ -53,49 +66,72 @@ class Store:
             raise SweepStoppedError(f"{path}: {problem}")
         return xr.load_dataset(path, engine="netcdf4")
 
-    def path(self, scenario: Scenario) -> Path:
-        """File of a scenario's result."""
+    def measured(self, scenario: Scenario) -> Metrics:
+        """The figures of a scenario's run, which is made now if it has not been, or if their file is damaged.
+
+        Raises:
+            SweepStoppedError: it cannot be made, or not kept.
+        """
+        path = self.path(scenario, FIGURES)
+        try:
+            return _read_figures(path)
+        except (OSError, ValueError):
+            pass
+        if problem := attempt(scenario, path, self._engine):
+            raise SweepStoppedError(f"{path}: {problem}")
+        return _read_figures(path)
+
+    def path(self, scenario: Scenario, kind: str = RESULT) -> Path:
+        """File of a scenario's result, or of its figures."""
         text = "\n".join([to_yaml(scenario), json.dumps(versions()), self._engine])
-        return self._folder / f"{scenario.name}-{hashlib.sha256(text.encode()).hexdigest()[:16]}.nc"
+        return self._folder / f"{scenario.name}-{hashlib.sha256(text.encode()).hexdigest()[:16]}{kind}"
 
-    def missing(self, scenarios: Iterable[Scenario]) -> list[Scenario]:
-        """Those that have not been run, once each, the longest first."""
-        wanted = {self.path(scenario): scenario for scenario in scenarios}
-        return sorted((s for path, s in wanted.items() if not path.exists()), key=_effort, reverse=True)
+    def missing(self, scenarios: Iterable[Scenario], figures: Iterable[Scenario] = ()) -> dict[Path, Scenario]:
+        """Files that are not there, by the scenario to run for each, the longest first.
 
-    def run(self, scenarios: Iterable[Scenario], done: Callable[[], None]) -> None:
+        Args:
+            scenarios: whose results are needed; their figures come along.
+            figures: whose figures alone are needed.
+        """
+        results = {self.path(scenario): scenario for scenario in scenarios}
+        brought = {path.with_suffix(FIGURES) for path in results}
+        measured = {self.path(scenario, FIGURES): scenario for scenario in figures}
+        wanted = results | {path: scenario for path, scenario in measured.items() if path not in brought}
+        missing = ((path, scenario) for path, scenario in wanted.items() if not path.exists())
+        return dict(sorted(missing, key=lambda item: _effort(item[1]), reverse=True))
+
+    def run(self, missing: Mapping[Path, Scenario], done: Callable[[], None]) -> None:
         """Run what is missing, on all processors.
 
         Args:
-            scenarios: what is needed.
+            missing: as :meth:`missing` gives it.
             done: called after each run.
 
         Raises:
             SweepStoppedError: a run cannot be made, or not kept; those that were finished are.
         """
-        missing = self.missing(scenarios)
         workers = os.cpu_count() or 1
-        for first in range(0, len(missing), workers * RUNS_PER_WORKER):
-            batch = missing[first : first + workers * RUNS_PER_WORKER]
+        files = list(missing.items())
+        for first in range(0, len(files), workers * RUNS_PER_WORKER):
+            batch = files[first : first + workers * RUNS_PER_WORKER]
             with Processes(min(len(batch), workers)) as pool:
                 self._run_batch(batch, pool, done)
 
-    def _run_batch(self, batch: Iterable[Scenario], pool: Processes, done: Callable[[], None]) -> None:
-        def begin(scenario: Scenario) -> "Future[str | None]":
-            return pool.call(attempt, scenario, self.path(scenario), self._engine)
+    def _run_batch(self, batch: Iterable[tuple[Path, Scenario]], pool: Processes, done: Callable[[], None]) -> None:
+        def begin(path: Path, scenario: Scenario) -> "Future[str | None]":
+            return pool.call(attempt, scenario, path, self._engine)
 
-        waiting = {begin(scenario): scenario for scenario in batch}
+        waiting = {begin(path, scenario): (path, scenario) for path, scenario in batch}
         retried: set[Path] = set()
         while waiting:
             for future in wait(waiting, return_when=FIRST_COMPLETED).done:
-                scenario = waiting.pop(future)
-                path = self.path(scenario)
+                path, scenario = waiting.pop(future)
                 try:
                     problem = future.result()
                 except WorkerDiedError as death:
                     if path not in retried:
                         retried.add(path)
-                        waiting[begin(scenario)] = scenario
+                        waiting[begin(path, scenario)] = path, scenario
                         continue
                     problem = str(death)
                 if problem:
@@ -115,11 +151,29 @@ def attempt(scenario: Scenario, path: Path, engine: str) -> str | None:
 
 
 def run_to_file(scenario: Scenario, path: Path, engine: str) -> None:
-    """Run a scenario; the file appears when it is complete."""
+    """Run a scenario; the files of its figures and, if the path is a result's, of the result appear when complete."""
+    result = simulate(scenario, engine=engine)
     with tempfile.TemporaryDirectory(dir=path.parent) as folder:
         partial = Path(folder) / path.name
-        simulate(scenario, engine=engine).to_netcdf(partial, engine="netcdf4")
-        partial.replace(path)
+        figures = partial.with_suffix(FIGURES)
+        figures.write_text(json.dumps(measured(scenario, result).to_dict()), encoding="utf-8")
+        figures.replace(path.with_suffix(FIGURES))
+        if path.suffix == RESULT:
+            result.to_netcdf(partial, engine="netcdf4")
+            partial.replace(path)
+
+
+def _read_figures(path: Path) -> Metrics:
+    """Figures from their file.
+
+    Raises:
+        OSError: there is none.
+        ValueError: it is damaged.
+    """
+    figures = json.loads(path.read_text(encoding="utf-8"))
+    if not isinstance(figures, dict):
+        raise ValueError(f"{path} holds no figures")  # noqa: TRY004 - a damaged file, as one that is no JSON
+    return Metrics(**figures)
 
 
 def _effort(scenario: Scenario) -> float:

@@ -1,17 +1,36 @@
-"""Tables 1-6 of the paper: each cell as published, as this project gets it, and the difference with its reason."""
+"""Tables 1-6 of the paper: each cell as published and by both readings, and why it differs where it does."""
 
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
 
-from drake_formation.measuring import Metrics, metrics
 from drake_formation.paper.published import published
-from drake_formation.paper.runs import FORMATIONS, GAINS, MATERIALS, transport, transports
-from drake_formation.paper.store import Store
-from drake_formation.scenario import Scenario, load_scenario, resolve
+from drake_formation.paper.quantities import TABLES, Measure, Quantity
+from drake_formation.paper.readings import READINGS, Place, Run
+from drake_formation.paper.reasons import reason
+from drake_formation.paper.runs import CASES, MATERIALS
+from drake_formation.paper.score import AGREES, agrees
+from drake_formation.paper.store import Measures, Store
+from drake_formation.scenario import Scenario
 
-AGREES = 0.2
-"""A cell agrees when it differs by at most this share of the published value; the paper prints two to three digits
-of quantities that depend on inferred ones."""
+
+@dataclass(frozen=True, kw_only=True)
+class Entry:
+    """A number of the paper beside a run's.
+
+    Attributes:
+        quantity: what it is.
+        place: where it is printed.
+        robot: whose, from 1; 0 where it is all robots'.
+        published: as printed.
+        ours: from the run.
+    """
+
+    quantity: Quantity
+    place: Place
+    robot: int
+    published: float
+    ours: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,10 +41,12 @@ class Cell:
         table: such as ``Table 3``.
         row: which quantity and gain.
         column: which material (and robot).
-        unit: of both numbers.
+        unit: of all numbers.
         published: as printed.
-        ours: from our run.
-        reason: why they differ, where they do not agree.
+        ours: from our runs, by the name of the reading.
+        set_by: by the reading, the parameter that this number set; empty for a prediction.
+        reasons: by the reading, why the two differ, where they do not agree.
+        rerun: the command that makes it again.
     """
 
     table: str
@@ -33,178 +54,114 @@ class Cell:
     column: str
     unit: str
     published: float
-    ours: float
-    reason: str = ""
+    ours: dict[str, float]
+    set_by: dict[str, str] = field(default_factory=dict)
+    reasons: dict[str, str] = field(default_factory=dict)
+    rerun: str = ""
 
-    @property
-    def difference(self) -> float:
-        """Ours less published."""
-        return self.ours - self.published
-
-    @property
-    def agrees(self) -> bool:
-        """Whether the two are the same to within ``AGREES``."""
-        return abs(self.difference) <= AGREES * abs(self.published)
+    def agrees(self, reading: str, share: float = AGREES) -> bool:
+        """Whether a reading gives what is published, to within a share of it."""
+        return agrees(self.published, self.ours[reading], share)
 
 
 def table1() -> list[Cell]:
     """Material properties."""
     return [
-        Cell(table="Table 1", row="stiffness k", column=name, unit="N/m", published=printed, ours=MATERIALS[name])
+        Cell(
+            table="Table 1",
+            row="stiffness k",
+            column=name,
+            unit="N/m",
+            published=printed,
+            ours=dict.fromkeys(READINGS, MATERIALS[name]),
+        )
         for name, printed in published()["materials"].items()
     ]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Quantity:
-    """A block of cells: one quantity for both materials and three gains.
+def entries(
+    quantity: Quantity,
+    store: Measures,
+    run: Run,
+    measure: Measure | None = None,
+    only: tuple[str, float] | None = None,
+) -> Iterator[Entry]:
+    """The paper's numbers of a quantity beside those of some runs.
 
-    Attributes:
-        table: such as ``Table 3``.
-        formation: shipped scenario.
-        key: its key in ``published.yaml``.
-        row: what is printed before the gain.
-        unit: as in the paper; its "%" reads as cm.
-        measure: the numbers of a cell, one or one a robot, in that unit.
-        reason: why a cell may differ.
+    Args:
+        quantity: what the paper prints.
+        store: has the runs' figures.
+        run: the transport of a formation, a material and a gain.
+        measure: what to take of a run's figures instead of what the quantity says.
+        only: material and gain; all if None.
     """
-
-    table: str
-    formation: str
-    key: str
-    row: str
-    unit: str
-    measure: Callable[[Metrics], list[float]]
-    reason: Callable[["Quantity", str, float, Metrics], str]
-
-    def cells(self, store: Store, run: Callable[[str, str, float], Scenario] = transport) -> Iterator[Cell]:
-        """The cells, from the store's runs; ``run`` says which one a formation, a material and a gain name."""
-        for material, by_gain in published()[self.formation][self.key].items():
-            for delta in GAINS:
-                printed = by_gain[delta]
-                figures = metrics(store[run(self.formation, material, delta)])
-                ours = self.measure(figures)
-                printed_each = printed if isinstance(printed, list) else [printed]
-                for robot, (theirs, mine) in enumerate(zip(printed_each, ours, strict=True), start=1):
-                    column = f"{material}, robot {robot}" if len(ours) > 1 else material
-                    cell = Cell(
-                        table=self.table,
-                        row=f"{self.row}, δ = {delta:g}",
-                        column=column,
-                        unit=self.unit,
-                        published=theirs,
-                        ours=mine,
-                    )
-                    yield cell if cell.agrees else replace(cell, reason=self.reason(self, material, delta, figures))
+    for material, by_gain in published()[quantity.formation][quantity.key].items():
+        for delta, numbers in by_gain.items():
+            if only and only != (material, delta):
+                continue
+            place = Place(quantity.formation, quantity.key, material, delta)
+            ours = (measure or quantity.measure)(store.measured(run(quantity.formation, material, delta)))
+            printed = numbers if isinstance(numbers, list) else [numbers]
+            for k, (theirs, mine) in enumerate(zip(printed, ours, strict=True), start=1):
+                robot = k if len(ours) > 1 else 0
+                yield Entry(quantity=quantity, place=place, robot=robot, published=theirs, ours=mine)
 
 
-def tracking_reason(_quantity: Quantity, _material: str, delta: float, _figures: Metrics) -> str:
-    """Why a tracking error differs."""
-    if delta == 0:
-        return "how far an obstacle pushes depends on ρ0 and η, which are fitted to one other number"
-    return (
-        "with consensus the formation moves as one body of N masses under the same push, so ε falls with N (here 15 "
-        "cm for two robots, 10 cm for four); the published 12.6 and 18 cm rise with N, which no single η gives"
-    )
-
-
-def consensus_reason(_quantity: Quantity, material: str, delta: float, figures: Metrics) -> str:
-    """Why a consensus error differs."""
-    if delta > 0:
-        return (
-            f"e is the residual at the hand-off (here {100 * figures.consensus_error_m:.2f} cm), which depends on "
-            "T_agg and on the phase in which the virtual springs ring then"
+def cells(quantity: Quantity, store: Measures, only: tuple[str, float] | None = None) -> Iterator[Cell]:
+    """The cells of a quantity by both readings; of one material and gain if asked for."""
+    by_reading = [list(entries(quantity, store, reading.transport, only=only)) for reading in READINGS.values()]
+    for both in zip(*by_reading, strict=True):
+        first, place = both[0], both[0].place
+        ours = {key: entry.ours for key, entry in zip(READINGS, both, strict=True)}
+        missed = [key for key, value in ours.items() if not agrees(first.published, value)]
+        yield Cell(
+            table=quantity.table,
+            row=f"{quantity.row}, δ = {place.delta:g}",
+            column=f"{place.material}, robot {first.robot}" if first.robot else place.material,
+            unit=quantity.unit,
+            published=first.published,
+            ours=ours,
+            set_by={key: reading.set_by(place) for key, reading in READINGS.items()},
+            reasons={key: reason(key, place, store) for key in missed},
+            rerun=rerun_command(quantity.table, place.material, place.delta),
         )
-    if material == "steel":
-        return "without consensus the steel holds the distances (Eq. 2); what is left is rotation and the residual"
-    return "how far one robot is pushed away from the others depends on ρ0 and η, fitted to the line"
 
 
-def force_reason(quantity: Quantity, material: str, delta: float, figures: Metrics) -> str:
-    """Why a peak force differs."""
-    if delta == 0:
-        return "the local LQR answers the springs' push at the hand-off, which depends on the residual there"
-    robots = resolve(load_scenario(quantity.formation)).robots
-    numbers = published()[quantity.formation]
-    error, force = numbers["consensus_error"][material][delta] / 100, numbers["peak_force"][material][delta]
-    cost = delta * robots * error
-    if cost > (1 + AGREES) * force:
-        return (
-            f"as printed, force and error contradict each other: the published e of {100 * error:g} cm alone costs "
-            f"about δ·N·e = {cost:.0f} N"
-        )
-    return (
-        f"the peak is about δ·N·e at the hand-off, so it follows the residual: {100 * figures.consensus_error_m:.2f} "
-        f"cm here, {100 * error:g} cm published"
-    )
+def rerun_command(table: str, material: str, delta: float) -> str:
+    """The command that runs a cell again by both readings."""
+    return f"drake-formation reproduce --cell {table.lower().replace(' ', '')}:{material}:{delta:g}"
 
 
-def _centimetres(lengths: Iterable[float]) -> list[float]:
-    return [100 * length for length in lengths]
-
-
-def _errors(table: str, formation: str) -> Quantity:
-    return Quantity(
-        table=table,
-        formation=formation,
-        key="consensus_error",
-        row="‖e‖",
-        unit="cm",
-        measure=lambda figures: _centimetres([figures.consensus_error_m]),
-        reason=consensus_reason,
-    )
-
-
-def _forces(table: str, formation: str) -> Quantity:
-    return Quantity(
-        table=table,
-        formation=formation,
-        key="peak_force",
-        row="‖u‖",
-        unit="N",
-        measure=lambda figures: [figures.peak_force_n],
-        reason=force_reason,
-    )
-
-
-TABLES: dict[str, tuple[Quantity, ...]] = {
-    "table2": (
-        Quantity(
-            table="Table 2",
-            formation="line",
-            key="tracking_error",
-            row="‖ε‖",
-            unit="cm",
-            measure=lambda figures: _centimetres(figures.tracking_error_m),
-            reason=tracking_reason,
-        ),
-    ),
-    "table3": (_errors("Table 3", "line"), _forces("Table 3", "line")),
-    "table4": (
-        Quantity(
-            table="Table 4",
-            formation="quadrilateral",
-            key="tracking_error",
-            row="‖ε‖",
-            unit="cm",
-            measure=lambda figures: _centimetres([max(figures.tracking_error_m)]),
-            reason=tracking_reason,
-        ),
-    ),
-    "table5": (_errors("Table 5", "quadrilateral"), _forces("Table 5", "quadrilateral")),
-    "table6": (_errors("Table 6", "octagon"), _forces("Table 6", "octagon")),
-}
-"""What each table is made of; Table 1 needs no run."""
+def transports(run: Run) -> list[Scenario]:
+    """All cells' transports of a reading."""
+    return [run(*case) for case in CASES]
 
 
 def table_runs(name: str) -> list[Scenario]:
     """The runs a table needs."""
     formations = {quantity.formation for quantity in TABLES.get(name, ())}
-    return [scenario for formation in FORMATIONS if formation in formations for scenario in transports(formation)]
+    cases = [(formation, material, delta) for formation, material, delta in CASES if formation in formations]
+    return [reading.transport(*case) for reading in READINGS.values() for case in cases]
 
 
 def table(name: str, store: Store) -> list[Cell]:
     """A table's cells."""
     if name == "table1":
         return table1()
-    return [cell for quantity in TABLES[name] for cell in quantity.cells(store)]
+    return [cell for quantity in TABLES[name] for cell in cells(quantity, store)]
+
+
+def all_entries(store: Store, run: Run, measures: Mapping[str, Measure] = MappingProxyType({})) -> list[Entry]:
+    """All numbers of Tables 2-6 beside those of some runs.
+
+    Args:
+        store: has the runs.
+        run: see :func:`entries`.
+        measures: by table, what to take of a run's figures instead of what its quantities say.
+    """
+    return [
+        entry
+        for name in TABLES
+        for quantity in TABLES[name]
+        for entry in entries(quantity, store, run, measures.get(quantity.table))
+    ]

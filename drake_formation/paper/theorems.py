@@ -7,10 +7,9 @@ from pydrake.systems.primitives import Linearize
 
 from drake_formation.diagram import build_diagram
 from drake_formation.formation import graphs
-from drake_formation.paper.runs import (
-    TOPOLOGIES,
-    topology,
-)
+from drake_formation.paper.curves import phase
+from drake_formation.paper.published import published
+from drake_formation.paper.runs import TOPOLOGIES, topology
 from drake_formation.paper.store import Store
 from drake_formation.paper.verdicts import FAILS, HOLDS, Claim, verdict
 from drake_formation.parameters import find_block
@@ -25,9 +24,10 @@ def gain(_store: Store) -> Claim:
     """Sec. 5.1: K_l."""
     block = find_block(build_diagram(load_scenario("line")), "robot_1/tracking")
     ours = block.CreateDefaultContext().get_numeric_parameter(0).CopyToVector().reshape(2, 4)
-    error = float(np.abs(ours - [[1, 0, 9, 0], [0, 1, 0, 9]]).max())
+    printed = published()["lqr"]["K_l"]
+    error = float(np.abs(ours - printed).max())
     return Claim(
-        claim="K_l = [1 0 9 0; 0 1 0 9] (Sec. 5.1)",
+        claim=f"K_l = [{'; '.join(' '.join(f'{gain:g}' for gain in row) for row in printed)}] (Sec. 5.1)",
         verdict=HOLDS if error < 1e-12 else FAILS,
         evidence=f"largest deviation {error:.1e}",
         source="the tracking block of the line's diagram",
@@ -38,7 +38,7 @@ def theorem_1(_store: Store) -> Claim:
     """Theorem 1 on the matrices of the diagram."""
     block = find_block(build_diagram(load_scenario("line")), "robot_1/tracking")
     k = block.CreateDefaultContext().get_numeric_parameter(0).CopyToVector().reshape(2, 4)
-    a, b = robot_matrices(40.0)
+    a, b = robot_matrices(published()["robot_mass_kg"])
     slowest = float(np.linalg.eigvals(a - b @ k).real.max())
     return Claim(
         claim="Theorem 1: the local tracking error is asymptotically stable",
@@ -92,6 +92,42 @@ def in_formation_at_goal(scenario: Scenario) -> Scenario:
             "robots.start": {"centre": list(scenario.transport.goal)},
             "avoidance.obstacles": [],
         },
+    )
+
+
+def drifting() -> Scenario:
+    """The line in formation under consensus alone, as the proof of Theorem 2 has it, and moving."""
+    return with_overrides(
+        in_formation_at_goal(load_scenario("line")),
+        {
+            "tracking": {"kind": "none"},
+            "consensus.delta": 1e4,
+            "robots.velocity": list(DRIFT),
+            "transport.duration": 10.0,
+        },
+    )
+
+
+DRIFT = (0.1, 0.0)
+"""Velocity of every robot at the start (m/s); chosen."""
+
+
+def invariant_mean(store: Store) -> Claim:
+    """The proof of Theorem 2: Σ u_g = 0, thus the mean state does not change."""
+    moving = phase(store[drifting()], 1)
+    total = float(np.abs(moving["control_force"].sum("robot")).max())
+    mean = moving["position"].mean("robot")
+    moved = float(np.linalg.norm(mean[-1] - mean[0]))
+    duration = float(moving["time"][-1] - moving["time"][0])
+    return Claim(
+        claim="proof of Theorem 2: Σ u_g = 0, thus x̄ is invariant and ė = ẋ",
+        verdict=HOLDS if moved < MARGIN else FAILS,
+        evidence=(
+            f"Σ u_g is {total:.1g} N throughout, but x̄ moves by {moved:.2f} m in {duration:g} s where the robots move "
+            f"at {DRIFT[0]:g} m/s: with Σ u_g = 0 the mean velocity is invariant, and the mean position only where "
+            "that is 0. The conclusion on e does not need it"
+        ),
+        source="line, consensus alone, δ = 1e4, moving",
     )
 
 

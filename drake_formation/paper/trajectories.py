@@ -5,12 +5,14 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from drake_formation.markdown import markdown_table
-from drake_formation.measuring import metrics
-from drake_formation.paper.curves import draw_transport, phase, since_hand_off
+from drake_formation.paper.curves import phase, since_hand_off
+from drake_formation.paper.paths import draw_transport
 from drake_formation.paper.runs import transport
 from drake_formation.paper.store import Store
 from drake_formation.scenario import Scenario, load_scenario, with_overrides
 from drake_formation.vectors import length
+from drake_formation.viz.figures import snapshot_times
+from drake_formation.viz.obstacles import draw_obstacles
 
 REFERENCES: dict[str, dict[str, Any]] = {
     "set point": {},
@@ -36,7 +38,7 @@ def comparison(store: Store) -> str:
     rows = []
     for name in REFERENCES:
         result = store[referenced(name)]
-        figures = metrics(result)
+        figures = store.measured(referenced(name))
         lag = float(length(phase(result, 1)["tracking_error"]).max())
         errors = [100 * max(figures.tracking_error_m), 100 * figures.consensus_error_m]
         rows.append([name, f"{figures.peak_force_n:.1f}", f"{errors[0]:.1f}", f"{errors[1]:.2f}", f"{lag:.2f}"])
@@ -55,6 +57,7 @@ def s_curve_figure(store: Store) -> Figure:
     figure = Figure(figsize=(10, 7), layout="constrained")
     plane, springs = figure.subplots(2, height_ratios=[2, 1])
     draw_transport(plane, carried)
+    draw_obstacles(plane, carried, snapshot_times(carried))
     plane.set(xlabel="x (m)", ylabel="y (m)")
     elongation = 100 * abs(carried["spring_length"] - carried["rest_length"]).max("spring")
     springs.plot(since_hand_off(carried), elongation)

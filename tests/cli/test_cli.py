@@ -181,10 +181,17 @@ def test_reproduce_names_the_nearest_part(cli):
     assert "did you mean 'table3'" in err
 
 
-def test_reproduce_writes_a_report_or_tries_topologies(cli):
-    status, _, err = cli("reproduce", "--only", "table3", "--topologies")
+@pytest.mark.parametrize("other", [["--topologies"], ["--cell", "table5:steel:0"]])
+def test_reproduce_does_one_thing(cli, other):
+    status, _, err = cli("reproduce", "--only", "table3", *other)
     assert status == 2
     assert "give one of them" in err
+
+
+def test_reproduce_refuses_a_cell_that_is_not_there(cli):
+    status, _, err = cli("reproduce", "--cell", "table5:wood:0")
+    assert status == 2
+    assert "rubber, steel" in err
 
 
 def test_parts_are_listed_with_their_packages(cli):

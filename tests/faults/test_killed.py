@@ -74,7 +74,7 @@ def test_a_study_goes_on_when_a_worker_is_killed_and_after_its_parent_is(tmp_pat
     command = ("reproduce", "--only", "table2", "--out", out)
 
     def kept():
-        return {path: path.stat().st_mtime_ns for path in (out / "runs").glob("*.nc")}
+        return {path: path.stat().st_mtime_ns for path in (out / "runs").glob("*.json")}
 
     process = started(*command, cwd=tmp_path)
     until(lambda: len(kept()) > 0, process)

@@ -3,21 +3,35 @@
 import numpy as np
 import xarray as xr
 
-from drake_formation.paper.curves import envelope, whole_error
+from drake_formation.paper.curves import PIXELS, draw_band, farthest, windows
 from drake_formation.paper.schematics import spring_shape
 
 
-def test_the_envelope_is_the_largest_value_of_each_window():
-    time = np.linspace(100.0, 110.0, 4001)
-    ringing = xr.Dataset(coords={"time": time}).assign(x=("time", np.abs(np.sin(40 * time)) * np.exp(-(time - 100))))
-    middles, largest = envelope(ringing, ringing["x"], width=0.5)
-    np.testing.assert_allclose(largest[:-1], np.exp(-(middles[:-1] - 0.25)), rtol=0.1)
-    assert largest.max() == ringing["x"].max()
+def test_windows_have_the_extremes_of_a_ringing():
+    time = np.linspace(0.0, 10.0, 4001)
+    middles, lowest, highest = windows(time, np.sin(40 * time) * np.exp(-time), 0.5)
+    np.testing.assert_allclose(highest[:-1], np.exp(-(middles[:-1] - 0.25)), rtol=0.15)
+    np.testing.assert_allclose(lowest[:-1], -np.exp(-(middles[:-1] - 0.25)), rtol=0.15)
 
 
-def test_the_whole_error_is_the_norm_over_robots_and_axes():
+def test_a_slow_signal_is_a_line_and_a_fast_one_a_band():
+    from matplotlib.figure import Figure
+
+    time = xr.DataArray(np.linspace(0.0, 60.0, 60001))
+    for signal, thick in ((np.cos(time), False), (np.cos(300 * time), True)):
+        axes = Figure().subplots()
+        draw_band(axes, time, signal, "black", "-", "")
+        (band,) = axes.collections
+        (polygon,) = band.get_paths()
+        inside = (polygon.vertices[:, 0] > 1) & (polygon.vertices[:, 0] < 59)
+        heights = np.abs(polygon.vertices[inside, 1])
+        assert (heights.min() > 0.9) == thick
+        assert len(axes.lines[0].get_xdata()) <= PIXELS + 1
+
+
+def test_the_error_shown_is_that_of_the_robot_farthest_off():
     error = xr.Dataset({"consensus_error": (("time", "robot", "axis"), [[[3.0, 0.0], [0.0, 4.0]]])})
-    assert whole_error(error).item() == 5.0
+    assert farthest(error).item() == 4.0
 
 
 def test_a_drawn_spring_joins_its_ends():

@@ -6,6 +6,7 @@ import pytest
 import xarray as xr
 
 from drake_formation import load_scenario, simulate, with_overrides
+from drake_formation.paper.measured import measured
 from drake_formation.paper.store import Store
 from drake_formation.sweep import Processes, SweepStoppedError
 from drake_formation.sweep.work import CODE, versions
@@ -34,23 +35,46 @@ def test_every_change_of_the_scenario_is_another_run(store):
 def test_only_what_is_missing_is_run_once_each_on_all_processors(store):
     store[SHORT]
     calls = []
-    assert store.missing([SHORT, OTHER, OTHER]) == [OTHER]
-    store.run([SHORT, OTHER, OTHER], lambda: calls.append(1))
+    missing = store.missing([SHORT, OTHER, OTHER])
+    assert missing == {store.path(OTHER): OTHER}
+    store.run(missing, lambda: calls.append(1))
     assert len(calls) == 1
     assert not store.missing([SHORT, OTHER])
-    assert len(list(store.path(OTHER).parent.iterdir())) == 2
+    assert len(list(store.path(OTHER).parent.glob("*.nc"))) == 2
+
+
+def test_figures_are_kept_without_the_result_and_are_those_of_the_run(store):
+    (path,) = store.missing([], [SHORT])
+    store.run({path: SHORT}, lambda: None)
+    assert [file.suffix for file in path.parent.iterdir()] == [".json"]
+    assert dict(store.measured(SHORT)) == dict(measured(SHORT, simulate(SHORT, engine="compiled")))
+    assert not store.missing([], [SHORT])
+
+
+def test_a_result_brings_its_figures(store):
+    assert list(store.missing([SHORT], [SHORT])) == [store.path(SHORT)]
+    store[SHORT]
+    assert not store.missing([], [SHORT])
+
+
+@pytest.mark.parametrize("damage", ["", "{", "[1]"])
+def test_damaged_figures_are_made_anew(store, damage):
+    wanted = dict(store.measured(SHORT))
+    (path,) = store.path(SHORT).parent.iterdir()
+    path.write_text(damage, encoding="utf-8")
+    assert dict(store.measured(SHORT)) == wanted
 
 
 def test_the_longest_run_comes_first(store):
     stiff = load_scenario("octagon", overrides={"springs.stiffness": 3e4})
-    assert store.missing([SHORT, stiff])[0] == stiff
+    assert next(iter(store.missing([SHORT, stiff]).values())) == stiff
 
 
 def test_more_runs_than_the_workers_may_make_are_made_all_the_same(store, monkeypatch):
     monkeypatch.setattr("drake_formation.paper.store.RUNS_PER_WORKER", 1)
     runs = [with_overrides(SHORT, {"springs.stiffness": float(k)}) for k in range(5)]
     calls = []
-    store.run(runs, lambda: calls.append(1))
+    store.run(store.missing(runs), lambda: calls.append(1))
     assert len(calls) == 5
     assert not store.missing(runs)
 
@@ -60,7 +84,7 @@ def test_other_code_makes_the_runs_anew_beside_the_earlier_ones(store, monkeypat
     before = store.path(SHORT)
     monkeypatch.setattr("drake_formation.paper.store.versions", lambda: versions() | {CODE: "other"})
     assert store.path(SHORT) != before
-    assert store.missing([SHORT]) == [SHORT]
+    assert list(store.missing([SHORT]).values()) == [SHORT]
     assert before.exists()
 
 
@@ -88,7 +112,7 @@ DIVERGING = with_overrides(
 
 def test_a_run_that_fails_in_a_worker_stops_the_study_in_words(store):
     with pytest.raises(SweepStoppedError, match="the run stopped at t = "):
-        store.run([DIVERGING], lambda: None)
+        store.run(store.missing([DIVERGING]), lambda: None)
     assert not list(store.path(SHORT).parent.iterdir())
 
 
@@ -104,8 +128,8 @@ def test_a_run_whose_worker_is_killed_is_made_once_more(store, monkeypatch, deat
 
     monkeypatch.setattr(Processes, "call", deadly)
     if kept:
-        store.run([SHORT], lambda: None)
+        store.run(store.missing([SHORT]), lambda: None)
         assert not store.missing([SHORT])
     else:
         with pytest.raises(SweepStoppedError, match="the worker process ended with exit status 7"):
-            store.run([SHORT], lambda: None)
+            store.run(store.missing([SHORT]), lambda: None)

@@ -3,6 +3,7 @@
 import pytest
 
 from drake_formation.paper import theorems
+from drake_formation.paper.store import Store
 from drake_formation.paper.verdicts import CONDITION, FAILS, HOLDS, verdict
 
 
@@ -21,6 +22,12 @@ def test_verdicts_on_matrices(claim, verdict):
     assert found.verdict == verdict
     assert found.evidence
     assert found.source
+
+
+def test_the_mean_of_moving_robots_moves(tmp_path):
+    found = theorems.invariant_mean(Store(tmp_path))
+    assert found.verdict == FAILS
+    assert "x̄ moves by 1.00 m in 10 s" in found.evidence
 
 
 def test_theorem_2_leaves_the_motion_of_the_whole_formation_alone():

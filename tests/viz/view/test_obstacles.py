@@ -8,8 +8,9 @@ from drake_formation import load_scenario, simulate
 from drake_formation.viz import animate
 from drake_formation.viz.links import alive, moving_links, present
 from drake_formation.viz.playback import Playback
-from drake_formation.viz.view import page
 from drake_formation.viz.view.obstacles import prism
+from drake_formation.viz.view.page import quiet_meshcat
+from drake_formation.viz.view.recording import viewing_diagram
 
 NOTCHED = np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 2.0], [1.5, 0.5], [0.0, 2.0], [0.0, 0.0]])
 MOVING = [
@@ -26,14 +27,24 @@ def test_a_prism_fills_its_outline_and_not_its_notch(outline):
     assert CalcVolume(prism(outline, 0.6)) == pytest.approx(0.6 * area)
 
 
-def test_obstacles_of_any_shape_that_move_are_in_the_page_and_in_the_film():
+def test_obstacles_of_any_shape_are_where_they_have_moved_in_the_view_and_in_the_film():
     result = simulate(load_scenario("line", overrides=SHORT | {"avoidance.obstacles": MOVING}))
     playback = Playback(result)
     np.testing.assert_allclose(playback.moved(np.array([0.0, 3.0])), [[[0, 0], [0, 0]], [[1, 0], [0, 0]]])
     _, high = playback.seen(playback.positions(np.array([0.0])))
     assert high[0] >= 13.2
     assert high[1] >= 9.0
-    assert "obstacle" in page(result)
+    with quiet_meshcat() as meshcat:
+        colours = dict.fromkeys(range(1, 3), (1.0, 0.0, 0.0, 1.0))
+        diagram = viewing_diagram(playback, meshcat, moving_links(playback), colours)
+    context = diagram.CreateDefaultContext()
+    context.SetTime(3.0)
+    scene = diagram.GetSubsystemByName("scene_graph")
+    query = scene.get_query_output_port().Eval(scene.GetMyContextFromRoot(context))
+    inspector = query.inspector()
+    frames = {inspector.GetName(frame): frame for frame in inspector.GetAllFrameIds()}
+    np.testing.assert_allclose(query.GetPoseInWorld(frames["obstacle_1"]).translation(), [1, 0, 0], atol=1e-12)
+    assert "obstacle_2" not in frames  # it is at rest
     film = animate(result, seconds=0.2)
     film._picture.show(len(film.times) - 1)
     (wall, *_) = film._picture._obstacles[0]

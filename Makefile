@@ -63,8 +63,10 @@ diagrams: $(VENV)/installed-dev
 	cp out/bandwidth/figures/bandwidth.png diagrams/bandwidth.png
 	$(BIN)/drake-formation sweep gains --out out/gains
 	cp out/gains/figures/consensus_error_m.png diagrams/gains-consensus-error.png
-	$(BIN)/drake-formation sweep bandwidth --out out/bandwidth
-	cp out/bandwidth/figures/consensus_error_m.png diagrams/shared-bandwidth.png
+	$(BIN)/drake-formation sweep bandwidth --out out/shared-bandwidth
+	cp out/shared-bandwidth/figures/consensus_error_m.png diagrams/shared-bandwidth.png
+	$(BIN)/drake-formation sweep resilience --out out/resilience
+	cp out/resilience/figures/outside_tolerance_s.png diagrams/resilience.png
 	$(BIN)/drake-formation compare avoidance --out out/avoidance
 	cp out/avoidance/figures/paths.png diagrams/avoidance-paths.png
 	$(BIN)/drake-formation analyze line --set consensus.delta=1e4 --out out/certificate

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from drake_formation.simulation.engines import ENGINES
+from drake_formation.sweep.channel_labels import channel_labels
 from drake_formation.sweep.dataset import FAILURES, write_dataset, write_failures
 from drake_formation.sweep.definition import Sweep
 from drake_formation.sweep.drive import drive
@@ -122,8 +123,9 @@ def run_sweep(
         if figures:
             from drake_formation.viz.sweep_figures import write_sweep_figures
 
+            labels = channel_labels(sweep)
             with _explained(folder / FIGURES):
-                failures = write_sweep_figures(dataset, folder / FIGURES)
+                failures = write_sweep_figures(dataset, folder / FIGURES, labels)
             if failures:
                 dataset.attrs[MISSING] = "\n".join(f"No figure {name}: {reason}" for name, reason in failures.items())
     return dataset

@@ -11,27 +11,42 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
+from matplotlib.patheffects import Normal, Stroke
 from numpy.typing import NDArray
 
 from drake_formation.viz.style import draw_each
 
 Numbers = NDArray[np.float64]
+Labels = NDArray[np.str_]
 
 MOST_LINES = 10
 """More lines than this in one figure cannot be told apart."""
+
+LABEL = "channel_label"
+"""Name of the coordinate of a metric that has what the channel certificate says."""
+
+BOUNDARIES = {
+    "stable": ("white", "-", "certified stable up to here"),
+    "unstable": ("red", "--", "certified unstable from here"),
+}
+"""Colour and style of the line about the points of a label, and what it is called."""
+
+OUTLINED = [Stroke(linewidth=4, foreground="black"), Normal()]
+"""So that a white line shows on white, in the legend."""
 
 _WIDE = 100.0
 """Ratio between the largest and the least value from which on a logarithmic scale shows more."""
 
 
-def write_sweep_figures(dataset: xr.Dataset, folder: Path) -> dict[str, str]:
+def write_sweep_figures(dataset: xr.Dataset, folder: Path, labels: Labels | None = None) -> dict[str, str]:
     """Draw every metric of a sweep over one or two axes as a PNG file; gives those that failed, and why.
 
     Args:
         dataset: from :func:`drake_formation.sweep.run_sweep`.
         folder: where; made if missing. Figures of metrics that are gone are removed.
+        labels: as for :func:`metric_figure`.
     """
-    wanted = {name: partial(metric_figure, dataset, name) for name in sweep_metrics(dataset)}
+    wanted = {name: partial(metric_figure, dataset, name, labels) for name in sweep_metrics(dataset)}
     folder.mkdir(parents=True, exist_ok=True)
     for old in folder.glob("*.png"):
         if old.stem not in wanted:
@@ -50,7 +65,7 @@ def sweep_metrics(dataset: xr.Dataset) -> list[str]:
     ]
 
 
-def metric_figure(dataset: xr.Dataset, name: str) -> Figure:
+def metric_figure(dataset: xr.Dataset, name: str, labels: Labels | None = None) -> Figure:
     """One metric over a sweep's axes: the largest of any robot where every robot has one.
 
     One axis of numbers gives a line, of names a point each. Two axes of numbers give a heat map; an axis of a few names
@@ -60,8 +75,12 @@ def metric_figure(dataset: xr.Dataset, name: str) -> Figure:
     Args:
         dataset: over one or two axes.
         name: a metric.
+        labels: of the channel certificate at every point, whose boundaries are drawn over a heat map; from
+            :func:`drake_formation.sweep.channel_labels.channel_labels`.
     """
     metric = dataset[name].load()
+    if labels is not None:
+        metric = metric.assign_coords({LABEL: (dataset["status"].dims, labels)})
     if "robot" in metric.dims:
         metric = metric.max("robot", keep_attrs=True)
     metric = metric.where(np.isfinite(metric))
@@ -127,7 +146,20 @@ def _draw_heat_map(figure: Figure, metric: xr.DataArray) -> None:
         axes.xaxis.set_tick_params(rotation=45)
     if np.isnan(values).any():
         axes.plot([], [], "s", color="0.8", markeredgecolor="0.5", label="no value")
-        axes.legend(fontsize="small", loc="lower left", bbox_to_anchor=(0.0, 1.0), frameon=False)
+    if LABEL in metric.coords:
+        _draw_boundaries(axes, _places(right), _places(up), metric[LABEL].values)
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(fontsize="small", loc="lower left", bbox_to_anchor=(0.0, 1.0), frameon=False, ncols=3)
+
+
+def _draw_boundaries(axes: Axes, x: Numbers, y: Numbers, labels: Labels) -> None:
+    """Lines half-way between points that have a label and their neighbours that have not."""
+    for label, (colour, style, text) in BOUNDARIES.items():
+        inside = labels == label
+        if inside.all() or not inside.any():
+            continue
+        axes.contour(x, y, inside.astype(float), levels=[0.5], colors=colour, linestyles=style, linewidths=2.5)
+        axes.plot([], [], style, color=colour, linewidth=2.5, label=text, path_effects=OUTLINED)
 
 
 def _draw_distribution(figure: Figure, metric: xr.DataArray) -> None:

@@ -6,6 +6,7 @@ import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.colors import LogNorm
+from matplotlib.contour import QuadContourSet
 from sweep.quick import quick_sweep
 
 from drake_formation.sweep import load_sweep
@@ -171,3 +172,17 @@ def test_whatever_came_out_can_be_drawn(axes, values):
     results["peak_force_n"][:] = np.resize(values, shape)
     for name in sweep_metrics(results):
         metric_figure(results, name).canvas.draw()
+
+
+def test_the_boundaries_of_the_certificate_are_between_the_points_that_differ():
+    labels = np.full((5, 4), "stable", dtype=object)
+    labels[:, 2], labels[:, 3] = "not certified", "unstable"
+    axes = metric_figure(dataset(STIFFNESS, DELTA), "peak_force_n", labels.astype(str)).axes[0]
+    lines = [collection for collection in axes.collections if isinstance(collection, QuadContourSet)]
+    places = [line.get_paths()[0].vertices[:, 0] for line in lines]
+    np.testing.assert_allclose(places[0], (1e2 + 1e3) / 2)
+    np.testing.assert_allclose(places[1], (1e3 + 1e4) / 2)
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == [
+        "certified stable up to here",
+        "certified unstable from here",
+    ]

@@ -30,6 +30,8 @@ Span = Annotated[tuple[float, float], Field(strict=False)]
 BASE = Profile(1e-2, 0.0, 0.0, 0.0, 1.0, "chosen")
 """What counts where no profile is named."""
 NEVER = 1e12
+IDEAL = ("kind", "profile", "bits")
+"""What may be written of a wire."""
 DISTRIBUTIONS = {"constant": law.CONSTANT, "uniform": law.UNIFORM, "gamma": law.GAMMA}
 ORDERS = {"newest": law.NEWEST, "in_order": law.IN_ORDER, "buffer": law.BUFFERED}
 LARGEST_QUEUE = 1024
@@ -133,8 +135,9 @@ class Packets(Channel):
     def checks(self, formation: Formation, owner: int) -> Iterator[Fault]:  # noqa: ARG002
         """What contradicts itself."""
         config, network = self.config, self.network
-        fields = type(config).model_fields
-        given = [name for name in fields if name != "profile" and getattr(config, name) != fields[name].default]
+        # What is as by default is not told from what is not written: a scenario that was written out has everything.
+        fields = {name: field for name, field in type(config).model_fields.items() if name not in IDEAL}
+        given = sorted(name for name, field in fields.items() if getattr(config, name) != field.default)
         if self.is_wire and given:
             message = "an ideal channel is a wire, which has no numbers"
             yield Fault((given[0],), message, shown(getattr(config, given[0])), "another profile, or profile alone")

@@ -48,7 +48,7 @@ diagrams: $(VENV)/installed-dev
 	for name in line quadrilateral octagon s_curve shared-medium; do \
 		$(BIN)/drake-formation graphviz $$name -o diagrams/$$name.svg || exit; \
 	done
-	for name in delay lossy link-failure saturated switching; do \
+	for name in delay lossy link-failure saturated switching crowded; do \
 		$(BIN)/drake-formation run $$name --out out/$$name || exit; \
 		cp out/$$name/figures/overview.png diagrams/$$name.png; \
 	done

@@ -18,7 +18,7 @@ GAINS = {
     "published": {"consensus.delta": 1e4},
     "damped": {"consensus.delta": 100.0, "consensus.delta_v": 60.0},
 }
-UNKNOWN_FOR = 10.0
+UNKNOWN_FOR = 2.0
 """How long to watch where nothing is known of how fast deviations grow (s)."""
 
 

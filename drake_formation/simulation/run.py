@@ -156,7 +156,9 @@ class PreparedRun:
         context = self._initial_context(formation)
         run = self._start(scenario, context, progress and (lambda time: progress(time - begin)))
         try:
-            _advance(run, formation, hand_off)
+            if hand_off > begin:
+                run.carry_out_updates()  # so that the first sample has their forces, whatever the engine
+                _advance(run, formation, hand_off)
             at_hand_off = run.context.Clone() if felt_obstacles(formation) else None
             # Carry out the hand-off now, so that the first sample of the transport has its forces.
             run.carry_out_updates()

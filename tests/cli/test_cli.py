@@ -27,6 +27,7 @@ def test_run_writes_everything_and_says_where(cli):
         "diagram.svg",
         "figures/consensus_error.png",
         "figures/control_forces.png",
+        "figures/overview.png",
         "figures/paths.png",
         "figures/spring_lengths.png",
         "figures/tracking_error.png",

@@ -22,11 +22,8 @@ np.save(sys.argv[1], traffic("compiled"))
 
 
 def traffic(engine, **changes):
-    """What became of all packets, shape (time, channels, counts).
-
-    Without the first sample, which Drake's Simulator takes before what is sent then, and compiled code after.
-    """
-    return simulate(load_scenario("lossy", overrides=SHORT | changes), engine=engine)["traffic"].values[1:]
+    """What became of all packets, shape (time, channels, counts)."""
+    return simulate(load_scenario("lossy", overrides=SHORT | changes), engine=engine)["traffic"].values
 
 
 @pytest.fixture(scope="module")

@@ -68,6 +68,7 @@ def packets(**settings):
 def alone(start):
     """As much of a formation as a channel between two asks for."""
     return SimpleNamespace(
+        has_medium=False,
         channels=SimpleNamespace(pairs=np.array([[0, 1]])),
         slots=np.zeros((2, 2)),
         starts=np.array([[0.0, 0.0], start[:2]]),

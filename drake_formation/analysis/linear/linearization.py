@@ -63,6 +63,7 @@ class LinearFormation:
         delta: the scenario's consensus gain δ (N/m).
         delta_v: the scenario's velocity consensus gain δ_v (N s/m).
         channels: the parts that stand in the scenario for the wires, one a channel.
+        medium: the part that stands in the scenario for what they share.
     """
 
     scenario: Scenario
@@ -74,6 +75,7 @@ class LinearFormation:
     delta: float
     delta_v: float
     channels: tuple[Part, ...]
+    medium: Part
 
     @property
     def resolved(self) -> Formation:
@@ -133,7 +135,7 @@ def linearize(scenario: Scenario) -> LinearFormation:
     diagram = build_diagram(rest)
     _require_states(diagram, formation)
     try:
-        return _linearized(rest, diagram, resolve(scenario).parts["channel"])
+        return _linearized(rest, diagram, resolve(scenario))
     except Exception as error:
         guests = {part.called() for parts in formation.parts.values() for part in parts if part.distribution != OWN}
         if not guests:
@@ -144,7 +146,7 @@ def linearize(scenario: Scenario) -> LinearFormation:
         ) from error
 
 
-def _linearized(rest: Scenario, diagram: Diagram, channels: tuple[Part, ...]) -> LinearFormation:
+def _linearized(rest: Scenario, diagram: Diagram, written: Formation) -> LinearFormation:
     formation, context = resolve(rest), diagram.CreateDefaultContext()
     state_matrix = StateMatrix(diagram)
     phase = diagram.GetSubsystemByName("phase").GetMyMutableContextFromRoot(context)
@@ -169,7 +171,8 @@ def _linearized(rest: Scenario, diagram: Diagram, channels: tuple[Part, ...]) ->
         B=_force_matrix(diagram, rest),
         delta=float(gains.delta),
         delta_v=float(gains.delta_v),
-        channels=channels,
+        channels=written.parts["channel"],
+        medium=written.parts["medium"][0],
     )
 
 
@@ -197,6 +200,8 @@ def at_rest(scenario: Scenario) -> Scenario:
     }
     if getattr(scenario.robots, "velocity", None) not in (None, (0.0, 0.0)):
         changes["robots.velocity"] = [0.0, 0.0]
+    if resolve(scenario).has_medium:
+        changes["consensus.medium"] = {"kind": "none"}
     if scenario.failures:
         changes["failures"] = []
     if breaks(resolve(scenario)):

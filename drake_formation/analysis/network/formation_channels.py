@@ -39,7 +39,7 @@ def channel_certificate(formation: LinearFormation) -> ChannelVerdict | None:
     parts = formation.channels
     if all(_is_wire(part) for part in parts):
         return None
-    if formation.resolved.has_medium:
+    if formation.medium.kind != "none":
         return ChannelVerdict(UNKNOWN, "channels share a medium, which makes some packets wait and loses others")
     for part in parts:
         reason = None if _is_wire(part) else _not_linear(part, formation)

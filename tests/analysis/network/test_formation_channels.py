@@ -189,3 +189,9 @@ def swings(channel, engine="compiled", **more):
     run = simulate(load_scenario("line", overrides=STEEL | start | more), engine=engine)
     apart = np.diff(run["position"].values, axis=1)[:, 0] - np.diff(run["slot"].values, axis=0)[0]
     return run["time"].values, np.linalg.norm(apart, axis=1)
+
+
+def test_channels_that_share_a_medium_are_not_certified():
+    found = channel_certificate(linearize(load_scenario("shared-medium")))
+    assert found.label == "not certified"
+    assert "share a medium" in found.reason

@@ -182,7 +182,7 @@ def test_settings_of_matplotlib_cost_no_picture(command, tmp_path, settings):
     status, out, _ = command(*RUN, "--out", "o", MATPLOTLIBRC=str(tmp_path), MPLBACKEND="nonsense")
     assert status == 0
     assert "No figure" not in out
-    assert len(list((tmp_path / "o" / "figures").glob("*.png"))) == 5
+    assert len(list((tmp_path / "o" / "figures").glob("*.png"))) == 6
 
 
 def test_a_picture_that_fails_costs_only_itself(command, tmp_path):

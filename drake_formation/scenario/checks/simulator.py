@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from functools import cache
 
 from drake_formation.config.errors import Fault, nearest, shown
+from drake_formation.parts.objects.breaking import BOUNDS
 from drake_formation.scenario.derive import robot_count
 from drake_formation.scenario.schema import Scenario
 
@@ -64,7 +65,9 @@ def _steps(scenario: Scenario) -> Iterator[Fault]:
         message = f"{duration / longest:.2g} steps and more are too many for {duration:g} s"
         yield Fault(("simulator", "max_step_size"), message, shown(longest), f"at least {duration / MOST_STEPS:g} s")
     looks, carried = getattr(scenario.object, "look_every", None), scenario.transport.duration
-    if looks and carried > MOST_STEPS * looks:
+    springs = [getattr(scenario.springs, name, None) for name in BOUNDS]
+    bounds = [getattr(scenario.object, "grip_strength", None), *springs]
+    if looks and any(bound is not None for bound in bounds) and carried > MOST_STEPS * looks:
         message = f"{carried / looks:.2g} looks are too many for {carried:g} s"
         yield Fault(("object", "look_every"), message, shown(looks), f"at least {carried / MOST_STEPS:g} s")
 

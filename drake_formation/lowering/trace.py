@@ -108,7 +108,7 @@ class TracedBlock:
         system, context = self._symbolic
         if function == UPDATE:
             context = self._context_of(system)  # another one would know the update already, and not carry it out
-        if function >= 0 and _vector_size(system.get_output_port(function)) < 0:
+        if function not in (DERIVATIVES, UPDATE) and _vector_size(system.get_output_port(function)) < 0:
             raise LoweringError(self.path, "an output port of it that is needed is abstract")
         try:
             if function == DERIVATIVES:

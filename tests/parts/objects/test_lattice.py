@@ -86,7 +86,7 @@ def test_a_fine_plate_is_no_deep_expression():
     (part,) = formation.parts["object"]
     block = part.block(formation, 0, part.numbers(formation, 0))
     traced = TracedBlock("object", block, SymbolTable())
-    (strain,) = traced.trace(int(block.GetOutputPort("strain").get_index()))
+    (strain,) = traced.trace(block.GetOutputPort("strain").get_index())
     assert Graph(traced.symbols.leaf_of).read(strain) > 15 * 15
 
 

@@ -127,10 +127,9 @@ class Formation:
         return np.array([getattr(part.config, "velocity", (0.0, 0.0)) for part in self.parts["robot"]], dtype=float)
 
     @cached_property
-    def telling_channels(self) -> tuple[int, ...]:
-        """The channels that count packets, by their rows in ``channels.pairs``, so far as somebody listens to them."""
-        parts = self.parts["channel"]
-        return tuple(k for k, part in enumerate(parts) if getattr(part, "tells_traffic", False))
+    def over_wires(self) -> bool:
+        """Whether what is sent over any channel is received, at once and exactly."""
+        return all(getattr(part, "is_wire", False) for part in self.parts["channel"])
 
     @cached_property
     def rest_lengths(self) -> Array:

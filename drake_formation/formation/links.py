@@ -82,6 +82,11 @@ class Channels:
         return cls(robots, pairs, weights)
 
     @cached_property
+    def labels(self) -> tuple[str, ...]:
+        """What each is called where values are given or shown: what robot 2 tells robot 1 is ``2-1``."""
+        return tuple(f"{speaker + 1}-{listener + 1}" for listener, speaker in self.pairs.tolist())
+
+    @cached_property
     def adjacency(self) -> Array:
         """γ_ij, zero where i does not hear j, shape (N, N)."""
         matrix = np.zeros((self.robots, self.robots))

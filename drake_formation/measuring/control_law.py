@@ -54,8 +54,7 @@ def control_law(formation: Formation, times: Array, recorded: Array) -> "Control
         recorded: the control forces that acted on the robots then (N), shape (m, N, 2).
     """
     known = all(isinstance(part, kinds) for role, kinds in KNOWN.items() for part in formation.parts[role])
-    wired = all(getattr(channel, "is_wire", False) for channel in formation.parts["channel"])
-    simple = known and wired and not formation.footprints.any() and formation.obstacles.are_circles
+    simple = known and formation.over_wires and not formation.footprints.any() and formation.obstacles.are_circles
     if simple and not any(map(_is_more, formation.parts["avoidance"])):
         return StagedLaw(formation) if formation.stages else ControlLaw(formation)
     return RecordedForces(formation, times, recorded)

@@ -44,15 +44,15 @@ def traffic(transport: Transport) -> Traffic | None:
     The age of information is the time since what is known was sent (Kaul, Yates & Gruteser 2012); between two samples
     the packet in use is the one at the later of them, for packets are taken after a sample.
     """
-    times, channels = transport["time"], transport.formation.telling_channels
-    if not channels or len(times) < 2:
+    times, formation = transport["time"], transport.formation
+    if "traffic" not in transport.series or len(times) < 2:
         return None
     recorded = transport["traffic"]
     counts = dict(zip(TRAFFIC, np.moveaxis(recorded[-1] - recorded[0], -1, 0), strict=True))
     sent_at = recorded[1:, :, TRAFFIC.index("sent_at")]
     spans, before, after = np.diff(times), times[:-1, None] - sent_at, times[1:, None] - sent_at
-    parts = transport.formation.parts["channel"]
-    sizes = np.array([parts[k].config.bits for k in channels])
+    parts = dict(zip(formation.channels.labels, formation.parts["channel"], strict=True))
+    sizes = np.array([parts[str(label)].config.bits for label in transport.series["channel"]])
     return Traffic(
         **{name: counts[name] for name in TRAFFIC[:5]},
         bits=sizes * counts["sent"],

@@ -97,7 +97,7 @@ def _owners(scenario: Scenario, *, sound: bool) -> dict[str, Owners]:
     return {
         "robot": Owners.robots(robots),
         "edge": Owners.edges([(i, j) for i, j in edges]),
-        "channel": Owners("channel", tuple(f"{j + 1}-{i + 1}" for i, j in channels.pairs.tolist())),
+        "channel": Owners("channel", channels.labels),
         "formation": Owners("formation", ("formation",)),
     }
 

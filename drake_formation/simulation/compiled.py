@@ -9,7 +9,7 @@ from drake_formation.lowering import CompiledDiagram, Status, lower
 from drake_formation.scenario import Scenario, ScenarioError, resolve
 from drake_formation.simulation.engine import Start
 from drake_formation.simulation.phases import Progress, felt_obstacles
-from drake_formation.simulation.recorder import NonFiniteStateError, recorded_ports, telling
+from drake_formation.simulation.recorder import NonFiniteStateError, RecordedPorts
 
 Array = NDArray[np.float64]
 
@@ -136,7 +136,7 @@ class CompiledRun:
         self.recording.add(now, self._lowered.outputs(self.recording.names, now, state[None], values))
 
 
-class CompiledRecording:
+class CompiledRecording(RecordedPorts):
     """What a compiled run leaves behind.
 
     Args:
@@ -148,11 +148,10 @@ class CompiledRecording:
     """
 
     def __init__(self, lowered: CompiledDiagram, robots: int) -> None:
+        super().__init__(lowered.diagram, robots)
         self._lowered = lowered
-        self._ports = recorded_ports(lowered.diagram, robots)
-        self._telling = telling(lowered.diagram, robots)
-        self._sizes = {name: lowered.diagram.GetOutputPort(ports[0]).size() for name, ports in self._ports.items()}
-        self.names = ["phase", *(port for ports in self._ports.values() for port in ports)]
+        self._sizes = {name: lowered.diagram.GetOutputPort(ports[0]).size() for name, ports in self.ports.items()}
+        self.names = ["phase", *(port for ports in self.ports.values() for port in ports)]
         self._times: list[Array] = []
         self._pieces: list[dict[str, Array]] = []
         self._known: dict[str, Array] = {}
@@ -181,16 +180,8 @@ class CompiledRecording:
     def series(self, port: str) -> Array:
         """Values of a recorded port, shape (samples, N, size)."""
         if port not in self._known:
-            ports, size = self._ports[port], self._sizes[port]
+            ports, size = self.ports[port], self._sizes[port]
             pieces = [np.stack([piece[name] for name in ports], axis=1) for piece in self._pieces]
             self._known[port] = np.concatenate([np.zeros((0, len(ports), size)), *pieces])
             self._known[port].setflags(write=False)
         return self._known[port]
-
-    def has(self, port: str) -> bool:
-        """Whether a port is recorded."""
-        return port in self._ports
-
-    def told(self, port: str) -> dict[int, Array]:
-        """Values of one of ``ROBOT_OPTIONS`` by robot that has it, from 0, each of shape (samples, size)."""
-        return {robot: self.series(port)[:, k] for k, robot in enumerate(self._telling[port])}

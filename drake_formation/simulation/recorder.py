@@ -1,5 +1,6 @@
 """What a run leaves behind, sample by sample, at every step the integrator takes."""
 
+import re
 from collections.abc import Callable
 from typing import Any, Protocol
 
@@ -26,6 +27,10 @@ OBJECT_NODES = f"object_{NODES}"
 """Likewise, of an object that is a grid."""
 
 
+TRAFFIC_PORT = re.compile(r"channel_(\d+)_to_(\d+)_traffic")
+"""An output port of channels that carry packets, by the numbers of speaker and listener."""
+
+
 class NonFiniteStateError(ArithmeticError):
     """A robot's state is no longer finite."""
 
@@ -40,6 +45,10 @@ class Recording(Protocol):
     @property
     def phases(self) -> Array:
         """0 during aggregation, 1 during transport; shape (samples,)."""
+
+    @property
+    def channels(self) -> list[str]:
+        """The channels whose ``traffic`` is recorded, as :attr:`drake_formation.formation.links.Channels.labels`."""
 
     def series(self, port: str) -> Array:
         """Values of a recorded port, shape (samples, N, size); N = 1 for those of the whole."""
@@ -63,8 +72,8 @@ def recorded_ports(diagram: Diagram, robots: int) -> dict[str, list[str]]:
     """What is recorded of a formation diagram: its output ports by what they tell, one a robot or one in all."""
     ports = {name: [f"{robot_name(i)}_{name}" for i in range(robots)] for name in RECORDED}
     ports |= {option: list(its.values()) for option, its in telling(diagram, robots).items() if its}
-    if telling_channels := traffic_ports(diagram):
-        ports["traffic"] = telling_channels
+    if told := told_traffic(diagram):
+        ports["traffic"] = list(told.values())
     for name, same in IN_PLACE_OF.items():
         names = [f"{robot_name(i)}_{name}" for i in range(robots)]
         if any(map(diagram.HasOutputPort, names)):
@@ -76,13 +85,44 @@ def recorded_ports(diagram: Diagram, robots: int) -> dict[str, list[str]]:
     return ports | {name: [name] for name in whole if diagram.HasOutputPort(name)}
 
 
-def traffic_ports(diagram: Diagram) -> list[str]:
-    """The output ports at which channels of packets tell what becomes of these, in the order of the channels."""
+def told_traffic(diagram: Diagram) -> dict[str, str]:
+    """The output ports at which channels tell what becomes of packets, by channel; unheard ones have none."""
     names = [diagram.get_output_port(k).get_name() for k in range(diagram.num_output_ports())]
-    return [name for name in names if name.startswith("channel_") and name.endswith("_traffic")]
+    found = [(name, TRAFFIC_PORT.fullmatch(name)) for name in names]
+    return {f"{match[1]}-{match[2]}": name for name, match in found if match}
 
 
-class Recorder:
+class RecordedPorts:
+    """What is recorded of a diagram, and of whom; whoever records gives the ``series``.
+
+    Args:
+        diagram: a formation diagram.
+        robots: number of robots N.
+
+    Attributes:
+        ports: names of the diagram's output ports by what they tell.
+        channels: see :class:`Recording`.
+    """
+
+    def __init__(self, diagram: Diagram, robots: int) -> None:
+        self.ports = recorded_ports(diagram, robots)
+        self.channels = list(told_traffic(diagram))
+        self._telling = telling(diagram, robots)
+
+    def series(self, port: str) -> Array:
+        """Values of a recorded port, shape (samples, N, size)."""
+        raise NotImplementedError
+
+    def has(self, port: str) -> bool:
+        """Whether a port is recorded."""
+        return port in self.ports
+
+    def told(self, port: str) -> dict[int, Array]:
+        """Values of one of ``ROBOT_OPTIONS`` by robot that has it, from 0, each of shape (samples, size)."""
+        return {robot: self.series(port)[:, k] for k, robot in enumerate(self._telling[port])}
+
+
+class Recorder(RecordedPorts):
     """A simulator monitor that keeps the recorded ports of every robot and the phase.
 
     Args:
@@ -92,9 +132,8 @@ class Recorder:
     """
 
     def __init__(self, diagram: Diagram, robots: int, progress: Callable[[float], None] | None = None) -> None:
-        ports = recorded_ports(diagram, robots)
-        self._ports = {name: [diagram.GetOutputPort(port) for port in its] for name, its in ports.items()}
-        self._telling = telling(diagram, robots)
+        super().__init__(diagram, robots)
+        self._ports = {name: [diagram.GetOutputPort(port) for port in its] for name, its in self.ports.items()}
         self._phase = diagram.GetOutputPort("phase")
         self._progress = progress
         self._times: list[float] = []
@@ -141,14 +180,6 @@ class Recorder:
         """Values of a recorded port, shape (samples, N, size)."""
         ports = self._ports[port]
         return np.reshape(self._samples[port], (len(self._times), len(ports), ports[0].size()))
-
-    def has(self, port: str) -> bool:
-        """Whether a port is recorded."""
-        return port in self._ports
-
-    def told(self, port: str) -> dict[int, Array]:
-        """Values of one of ``ROBOT_OPTIONS`` by robot that has it, from 0, each of shape (samples, size)."""
-        return {robot: self.series(port)[:, k] for k, robot in enumerate(self._telling[port])}
 
 
 def _shown(port: Any, context: Context) -> Array:

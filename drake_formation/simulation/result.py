@@ -86,8 +86,8 @@ def labelled_result(series: Series) -> "xr.Dataset":
         An object that is a body of its own has ``object_pose`` over ``pose``, ``object_strain``, as its kind says, and
         ``object_nodes`` over ``node`` if it is a grid. ``heading`` is there if any robot has one, and NaN for those
         that have none. Obstacles that are no circles or move have ``obstacle_outline`` over ``vertex``.
-        Channels that carry packets have ``traffic`` over ``channel`` (what robot 2 tells robot 1 is ``2-1``) and
-        ``count``.
+        Channels that carry packets to a robot that listens have ``traffic`` over ``channel`` (what robot 2 tells robot
+        1 is ``2-1``) and ``count``.
         ``deviation`` is NaN before the hand-off. A sample at the hand-off shows what is so from then on. Between
         samples the motion is the quintic with position, velocity and acceleration at both ends;
         :func:`drake_formation.measuring.metrics` measures that. The attribute ``remark`` says what to know about the
@@ -117,8 +117,7 @@ def labelled_result(series: Series) -> "xr.Dataset":
         coordinates["node"] = np.arange(1, series["object_nodes"].shape[1] + 1)
     happened, when = labelled_events(found_events(series))
     if "traffic" in series:
-        pairs = formation.channels.pairs[list(formation.telling_channels)].tolist()
-        coordinates["channel"] = [f"{speaker + 1}-{listener + 1}" for listener, speaker in pairs]
+        coordinates["channel"] = series["channel"]
         coordinates["count"] = list(TRAFFIC)
     attributes = {
         "title": scenario.name,

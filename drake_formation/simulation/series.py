@@ -105,8 +105,8 @@ def time_series(scenario: Scenario, choice: Choice, run: Recording, nominal: Rec
         arrays["heading"] = np.full(position.shape[:2], np.nan)
         for robot, heading in told.items():
             arrays["heading"][:, robot] = heading[:, 0]
-    if formation.telling_channels:
-        arrays["traffic"] = run.series("traffic")
+    if run.has("traffic"):
+        arrays |= {"traffic": run.series("traffic"), "channel": np.array(run.channels)}
     if breaks(formation):
         intact, broken_at = (run.series(name)[-1, 0] for name in BROKEN_OUTPUTS)
         arrays[BROKEN_AT[formation.has_body]] = np.where(intact == 1.0, np.nan, broken_at)

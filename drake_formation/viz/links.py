@@ -49,7 +49,8 @@ def channel_links(formation: Formation) -> list[Link]:
     """Who hears whom: a needle from the robot that speaks to a point at the one that hears."""
     links = []
     for k, (listener, speaker) in enumerate(formation.channels.pairs.tolist()):
-        may_die = k in formation.telling_channels or f"heard_{listener + 1}_{speaker + 1}" in formation.signals
+        carries_packets = getattr(formation.parts["channel"][k], "tells_traffic", False)
+        may_die = carries_packets or f"heard_{listener + 1}_{speaker + 1}" in formation.signals
         name = f"channels/{speaker + 1} to {listener + 1}"
         links.append(Link(name, speaker, listener, mortal=k if may_die else None))
     return links

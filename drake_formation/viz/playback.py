@@ -110,8 +110,9 @@ class Playback:
         """Whether each channel tells its robot something that is heeded and not old, shape (m, channels)."""
         formation = self.formation
         alive = np.ones((len(times), len(formation.channels.pairs)), dtype=bool)
-        if formation.telling_channels:
-            alive[:, list(formation.telling_channels)] = ages(self._result, times).T <= OLD
+        if "traffic" in self._result:
+            told = [formation.channels.labels.index(str(label)) for label in self._result["channel"].values]
+            alive[:, told] = ages(self._result, times).T <= OLD
         stage = np.searchsorted([stage.time for stage in formation.stages], times, "right") - 1
         for k, (i, j) in enumerate(formation.channels.pairs.tolist()):
             if (heard := formation.signals.get(f"heard_{i + 1}_{j + 1}")) is not None:

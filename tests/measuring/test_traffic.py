@@ -74,3 +74,17 @@ def test_time_outside_tolerance_counts_every_crossing():
     expected = beyond.mean() * (time[-1] - time[0])
     assert measure(series_of(result)).outside_tolerance_s == pytest.approx(expected, abs=1e-3)
     assert beyond.any()
+
+
+@pytest.mark.parametrize(("kind", "told"), [("none", []), ("leader_follower", ["1-2", "1-3", "1-4"])])
+@pytest.mark.parametrize("engine", ["blocks", "compiled"])
+def test_channels_nobody_listens_to_carry_nothing(engine, kind, told):
+    channel = {"kind": "packets", "period": 0.1}
+    overrides = {
+        "aggregation.duration": 0.0,
+        "transport.duration": 1.0,
+        "consensus": {"kind": kind, "channel": channel},
+    }
+    result = simulate(load_scenario("quadrilateral", overrides=overrides), engine=engine)
+    assert (result["channel"].values.tolist() if "traffic" in result else []) == told
+    assert metrics(result).messages_sent == (pytest.approx(10 * len(told), abs=len(told)) if told else None)

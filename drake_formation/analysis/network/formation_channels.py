@@ -57,7 +57,7 @@ def channel_certificate(formation: LinearFormation) -> ChannelVerdict | None:
 
 
 def _is_wire(part: Any) -> bool:
-    return getattr(part, "is_wire", False) or (isinstance(part, Delay) and part.config.delay == 0)
+    return bool(getattr(part, "is_wire", False))
 
 
 def _may_lose(part: Any) -> bool:

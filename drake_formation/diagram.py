@@ -13,7 +13,8 @@ from pydrake.systems.primitives import Adder, ConstantVectorSource, Gain
 
 from drake_formation.failing import Failing
 from drake_formation.formation.formation import Formation
-from drake_formation.parameters import Parameters, block_parameters, channel_name, robot_name, structure
+from drake_formation.formation.names import channel_name, robot_name
+from drake_formation.parameters import Parameters, block_parameters, structure
 from drake_formation.parts.part import Part
 from drake_formation.parts.registry import PartError
 from drake_formation.parts.roles import CONTROLLERS, ROLES, STATE, WIRES, Role

@@ -7,7 +7,8 @@ from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.primitives import Adder
 
 from drake_formation.formation.formation import Formation
-from drake_formation.parameters import Parameters, heeding_name, robot_name
+from drake_formation.formation.names import heeding_name, robot_name
+from drake_formation.parameters import Parameters
 from drake_formation.parts.objects.breaking import breaking_block, breaks
 from drake_formation.parts.registry import PartError
 from drake_formation.systems.hand_off import HandOff

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pydrake.systems.framework import Context, Diagram
 
 from drake_formation.formation.formation import Formation
+from drake_formation.formation.names import channel_name, heeding_name, robot_name
 from drake_formation.parts.objects.breaking import breaking_numbers, breaks, looks_every
 from drake_formation.parts.part import Part
 from drake_formation.parts.roles import ROLES
@@ -20,21 +21,6 @@ from drake_formation.scenario import Scenario, resolve
 Array = NDArray[np.float64]
 Parameters = dict[str, tuple[Array, ...]]
 """Numeric parameters of each block in order of their indices; the key is the block's path, ``robot_1/plant``."""
-
-
-def robot_name(robot: int) -> str:
-    """Name of a robot's system; robots are numbered from 1 in names and from 0 in arrays."""
-    return f"robot_{robot + 1}"
-
-
-def channel_name(listener: int, speaker: int) -> str:
-    """Name of the system of a channel between two robots, from 0."""
-    return f"channel_{speaker + 1}_to_{listener + 1}"
-
-
-def heeding_name(listener: int, speaker: int) -> str:
-    """Name of the system by which a robot drops another or follows its slot, from 0."""
-    return f"robot_{listener + 1}_heeds_{speaker + 1}"
 
 
 def placed_parts(formation: Formation) -> Iterator[tuple[str, Part, int]]:

@@ -9,8 +9,9 @@ from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import Adder, ConstantVectorSource
 
 from drake_formation.formation import graphs
+from drake_formation.formation.names import robot_name
 from drake_formation.lowering import lower
-from drake_formation.parameters import block_parameters, robot_name
+from drake_formation.parameters import block_parameters
 from drake_formation.parts.coordination.consensus import consensus_force
 from drake_formation.parts.references.set_point import SetPoint
 from drake_formation.parts.robots.point_mass import RobotPlant

@@ -126,6 +126,10 @@ class Formation:
         """Velocity at which every robot starts (m/s), shape (N, 2)."""
         return np.array([getattr(part.config, "velocity", (0.0, 0.0)) for part in self.parts["robot"]], dtype=float)
 
+    def start_state(self, robot: int) -> Array:
+        """Position and velocity with which a robot starts (m, m/s), shape (4,)."""
+        return np.concatenate([self.starts[robot], self.start_velocities[robot]])
+
     @cached_property
     def over_wires(self) -> bool:
         """Whether what is sent over any channel is received, at once and exactly."""

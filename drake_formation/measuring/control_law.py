@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.formation.formation import Formation
-from drake_formation.parameters import block_parameters, robot_name
+from drake_formation.formation.names import robot_name
+from drake_formation.parameters import block_parameters
 from drake_formation.parts.actuators.ideal import IdealActuator
 from drake_formation.parts.actuators.motor import MotorActuator
 from drake_formation.parts.avoidance.khatib import Khatib, avoidance_force

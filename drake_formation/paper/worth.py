@@ -1,9 +1,6 @@
 """What each ingredient of the probable reading is worth, what η from the line alone predicts, and what is as good."""
 
-from collections.abc import Callable
-
 from drake_formation.markdown import markdown_table
-from drake_formation.measuring import Metrics
 from drake_formation.paper.fit import fit
 from drake_formation.paper.readings import PRINTED, PROBABLE, Run
 from drake_formation.paper.runs import FORMATIONS
@@ -13,31 +10,6 @@ from drake_formation.paper.simulated import SIMULATED, changed
 from drake_formation.paper.store import Store
 from drake_formation.paper.tables import Entry, all_entries, transports
 from drake_formation.paper.variants import LAWS, by, ingredients
-
-FREE = (
-    "ρ0",
-    "η",
-    "D of two robots",
-    "D of more",
-    "T_agg of two robots",
-    "T_agg of four",
-    "T_agg of eight",
-    "that one robot feels an obstacle",
-    "which does in the octagon",
-    "the octagon's size",
-)
-"""What the paper does not give of any reading with a soft, wide push."""
-AS_GOOD = 3
-"""So many alternatives are looked at closely."""
-
-UNPRINTED: dict[str, Callable[[Metrics], float]] = {
-    "‖ε‖ of all robots (cm)": lambda figures: 100 * figures.stacked_tracking_error_m,
-    "least clearance (m)": lambda figures: figures.min_clearance_m,
-    "turning of the formation (cm)": lambda figures: 100 * figures.turned_m,
-    "RMS force (N)": lambda figures: figures.rms_force_n,
-    "energy (J)": lambda figures: figures.energy_j,
-}
-"""Figures that the paper does not print for every transport."""
 
 
 def ingredients_part() -> Part:

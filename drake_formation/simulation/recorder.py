@@ -10,7 +10,7 @@ from pydrake.systems.framework import Context, Diagram, EventStatus
 
 from drake_formation.diagram import DEMANDED, MEASURED, NODES, OBJECT_OUTPUTS, ROBOT_OPTIONS
 from drake_formation.failing import BROKEN_OUTPUTS, DRIVEN
-from drake_formation.parameters import robot_name
+from drake_formation.formation.names import robot_name
 
 Array = NDArray[np.float64]
 

@@ -7,12 +7,12 @@ from pydrake.systems.framework import Context, Diagram
 
 from drake_formation.diagram import build_diagram
 from drake_formation.formation.formation import Formation
+from drake_formation.formation.names import robot_name
 from drake_formation.lowering.errors import LoweringError
 from drake_formation.parameters import (
     block_parameters,
     find_block,
     placed_parts,
-    robot_name,
     structure,
     write_parameters,
     write_start,

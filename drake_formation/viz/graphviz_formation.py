@@ -16,7 +16,7 @@ from pydrake.systems.framework import Diagram
 
 from drake_formation.diagram import wired
 from drake_formation.formation.formation import Formation
-from drake_formation.parameters import robot_name
+from drake_formation.formation.names import robot_name
 from drake_formation.viz.graphviz import diagram_dot
 from drake_formation.viz.graphviz_blocks import FILLS, SIGNAL, WIRES, escaped, port_names
 from drake_formation.viz.rendering import laid_out, render

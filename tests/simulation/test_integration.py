@@ -15,7 +15,8 @@ from pydrake.systems.framework import LeafSystem
 
 from drake_formation.diagram import build_diagram
 from drake_formation.formation import graphs
-from drake_formation.parameters import block_parameters, robot_name
+from drake_formation.formation.names import robot_name
+from drake_formation.parameters import block_parameters
 from drake_formation.parts.avoidance.khatib import avoidance_force
 from drake_formation.parts.coordination.consensus import consensus_force
 from drake_formation.parts.tracking.lqr import tracking_force

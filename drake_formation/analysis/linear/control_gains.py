@@ -8,7 +8,8 @@ from pydrake.autodiffutils import ExtractGradient, InitializeAutoDiff
 
 from drake_formation.analysis.linear.linearization import LinearFormation
 from drake_formation.diagram import build_diagram
-from drake_formation.parameters import find_block, robot_name
+from drake_formation.formation.names import robot_name
+from drake_formation.parameters import find_block
 
 Array = NDArray[np.float64]
 

@@ -23,7 +23,8 @@ from drake_formation.analysis.linear.assumptions import (
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.diagram import build_diagram
 from drake_formation.formation.formation import Formation
-from drake_formation.parameters import find_block, has_block, placed_parts, robot_name
+from drake_formation.formation.names import robot_name
+from drake_formation.parameters import find_block, has_block, placed_parts
 from drake_formation.parts.objects.breaking import BOUNDS, breaks
 from drake_formation.parts.part import Part
 from drake_formation.scenario import Scenario, resolve, with_overrides

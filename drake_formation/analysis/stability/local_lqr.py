@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from drake_formation.analysis.linear.assumptions import local_lqr
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.analysis.linear.linearization import STATES, Array, LinearFormation
-from drake_formation.parameters import block_parameters, robot_name
+from drake_formation.formation.names import robot_name
+from drake_formation.parameters import block_parameters
 
 INPUTS = 2
 """Inputs of a robot: force along x and y (N)."""

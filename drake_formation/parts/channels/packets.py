@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from drake_formation.config.errors import Fault, shown
-from drake_formation.config.values import NonNegative, Positive, Section
+from drake_formation.config.values import NonNegative, Period, Positive, Probability, Section
 from drake_formation.formation.formation import Formation
+from drake_formation.formation.names import channel_name
 from drake_formation.parts.channels import packet_law as law
 from drake_formation.parts.channels.channel import Channel
 from drake_formation.parts.channels.packet_channel import PacketChannel
@@ -21,9 +22,6 @@ from drake_formation.systems.random_stream import random_start
 
 Array = NDArray[np.float64]
 
-Probability = Annotated[float, Field(ge=0, le=1)]
-Period = Annotated[float, Field(ge=1e-4, le=1e3)]
-"""A sampling period (s); in shorter ones a run would do nothing else than sample."""
 Span = Annotated[tuple[float, float], Field(strict=False)]
 """From a time to another (s)."""
 
@@ -244,9 +242,9 @@ class Packets(Channel):
         if self.is_wire:
             return None
         listener, speaker = formation.channels.pairs[owner].tolist()
-        start = [*formation.starts[speaker], *formation.start_velocities[speaker]]
+        start = formation.start_state(speaker)
         begin = formation.begin
-        drawn = random_start(formation.seed, f"channel_{speaker + 1}_to_{listener + 1}")
+        drawn = random_start(formation.seed, channel_name(listener, speaker))
         memory = [*drawn, 0.0, 0.0, *start[:2], 0.0, begin, 1.0, 0.0]
         return (
             np.array([*start, begin, 1.0]),

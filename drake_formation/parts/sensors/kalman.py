@@ -16,7 +16,7 @@ from drake_formation.config.values import Period, Section
 from drake_formation.formation.formation import Formation
 from drake_formation.parts.part import Numbers, Part
 from drake_formation.parts.registry import part
-from drake_formation.parts.sensors.noisy import random_starts, start_state
+from drake_formation.parts.sensors.noisy import random_starts
 from drake_formation.systems.random_stream import next_normal
 from drake_formation.systems.scalars import Scalar
 from drake_formation.systems.templates import block_template, in_double
@@ -223,4 +223,4 @@ class KalmanFilter(Part):
     def initial_discrete_state(self, formation: Formation, owner: int) -> Numbers:
         """The state at the start, as it is; since when, and that it is known; and where the random streams start."""
         memory = np.array([formation.begin, *([] if self._steady else np.zeros(3))])
-        return start_state(formation, owner), memory, random_starts(formation, owner, STREAMS)
+        return formation.start_state(owner), memory, random_starts(formation, owner, STREAMS)

@@ -11,6 +11,7 @@ from pydrake.systems.framework import BasicVector_, LeafSystem_
 from drake_formation.config.errors import Fault, shown
 from drake_formation.config.values import Period, Point, Probability, Section, Velocity
 from drake_formation.formation.formation import Formation
+from drake_formation.formation.names import robot_name
 from drake_formation.parts.part import Numbers, Part
 from drake_formation.parts.registry import part
 from drake_formation.systems.random_stream import next_normal, next_uniform, random_start
@@ -196,15 +197,10 @@ class NoisyStateSensor(Part):
         return None if self.config.period is None else self._start(formation, owner)
 
     def _start(self, formation: Formation, owner: int) -> Numbers:
-        return start_state(formation, owner), random_starts(formation, owner, STREAMS)
-
-
-def start_state(formation: Formation, robot: int) -> Any:
-    """Position and velocity (m, m/s) of a robot at the start, shape (4,)."""
-    return np.concatenate([formation.starts[robot], formation.start_velocities[robot]])
+        return formation.start_state(owner), random_starts(formation, owner, STREAMS)
 
 
 def random_starts(formation: Formation, robot: int, streams: tuple[str, ...]) -> Any:
     """Where the random streams of a robot's sensor start, shape (2 streams,)."""
-    places = [f"robot_{robot + 1}/sensor/{name}" for name in streams]
+    places = [f"{robot_name(robot)}/sensor/{name}" for name in streams]
     return np.concatenate([random_start(formation.seed, place) for place in places])

@@ -57,8 +57,7 @@ class Lag(Part):
 
     def initial_state(self, formation, owner):
         """The state that the speaker starts in, as if it had been sent for ever."""
-        speaker = formation.channels.pairs[owner, 1]
-        return np.concatenate([formation.starts[speaker], formation.start_velocities[speaker]])
+        return formation.start_state(formation.channels.pairs[owner, 1])
 
     def block(self, formation, owner, numbers):
         """The channel."""

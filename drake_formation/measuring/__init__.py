@@ -1,8 +1,8 @@
 """The figures by which a run is judged, each over the transport phase, between its samples too.
 
-One metric a file: ``consensus_error``, ``min_clearance``, ``peak_force``, ``settling_time``, ``spring_strain`` and
-``tracking_error``. ``metric`` says what a metric is, ``transport`` what it looks at, ``registry`` which there are;
-``control_law`` gives the control forces between samples.
+One metric a file, such as ``consensus_error``, or a few of one kind, such as ``messages``. ``metric`` says what a metric
+is, ``transport`` what it looks at, ``registry`` which there are; ``control_law`` gives the control forces between
+samples.
 """
 
 import warnings

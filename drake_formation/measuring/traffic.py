@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from drake_formation.measuring.transport import Transport
 from drake_formation.parts.roles import TRAFFIC
 
 Array = NDArray[np.float64]
@@ -38,21 +37,20 @@ class Traffic:
     duration: float
 
 
-def traffic(transport: Transport) -> Traffic | None:
-    """The packets of a run; None where no channel carries any, or the run has no length.
+def traffic(times: Array, recorded: Array, sizes: Array) -> Traffic:
+    """What became of packets.
 
     The age of information is the time since what is known was sent (Kaul, Yates & Gruteser 2012); between two samples
     the packet in use is the one at the later of them, for packets are taken after a sample.
+
+    Args:
+        times: of samples (s), rising, at least two, shape (samples,).
+        recorded: what the channels told, shape (samples, channels, ``TRAFFIC``).
+        sizes: of a packet of each channel (bit), shape (channels,).
     """
-    times, formation = transport["time"], transport.formation
-    if "traffic" not in transport.series or len(times) < 2:
-        return None
-    recorded = transport["traffic"]
     counts = dict(zip(TRAFFIC, np.moveaxis(recorded[-1] - recorded[0], -1, 0), strict=True))
     sent_at = recorded[1:, :, TRAFFIC.index("sent_at")]
     spans, before, after = np.diff(times), times[:-1, None] - sent_at, times[1:, None] - sent_at
-    parts = dict(zip(formation.channels.labels, formation.parts["channel"], strict=True))
-    sizes = np.array([parts[str(label)].config.bits for label in transport.series["channel"]])
     return Traffic(
         **{name: counts[name] for name in TRAFFIC[:5]},
         bits=sizes * counts["sent"],

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from drake_formation.formation.formation import Formation
 from drake_formation.measuring.control_law import ControlLaw, RecordedForces, StagedLaw, control_law
+from drake_formation.measuring.traffic import Traffic, traffic
 from drake_formation.scenario import resolve
 from drake_formation.simulation.motion import Motion
 from drake_formation.simulation.series import Series
@@ -78,6 +79,16 @@ class Transport:
         steps = np.arange(len(times) - 1)
         position, velocity, _ = self.robots.at(steps, np.full((len(steps), 1), 0.5))
         return self.law(0.5 * (times[:-1] + times[1:]), position[:, 0], velocity[:, 0]), velocity[:, 0]
+
+    @cached_property
+    def packets(self) -> Traffic | None:
+        """What became of packets; None where nobody listens to a channel that carries some, or there is one sample."""
+        if "traffic" not in self.series or len(self["time"]) < 2:
+            return None
+        channels = self.formation.channels.labels
+        parts = dict(zip(channels, self.formation.parts["channel"], strict=True))
+        sizes = np.array([parts[str(label)].config.bits for label in self.series["channel"]])
+        return traffic(self["time"], self["traffic"], sizes)
 
     @cached_property
     def _samples(self) -> NDArray[np.bool_]:

@@ -5,7 +5,6 @@ import pytest
 
 from drake_formation import load_scenario, metrics, simulate
 from drake_formation.measuring import measure
-from drake_formation.measuring.traffic import traffic
 from drake_formation.measuring.transport import Transport
 from drake_formation.simulation.result import series_of
 
@@ -49,7 +48,7 @@ def test_what_is_sent_is_delivered_lost_or_under_way(seed):
     scenario = {"profile": "lossy"}
     overrides = SQUARE | {"consensus.channel": {"kind": "packets"} | scenario, "seed": seed}
     result = simulate(load_scenario("quadrilateral", overrides=overrides), engine="compiled")
-    packets = traffic(Transport(series_of(result)))
+    packets = Transport(series_of(result)).packets
     under_way = packets.sent - packets.lost - packets.delivered
     assert (np.abs(under_way) <= 5).all()  # 40 ms at 10 ms a packet, at the beginning and at the end
     assert packets.lost.sum() / packets.sent.sum() == pytest.approx(0.1, abs=0.03)

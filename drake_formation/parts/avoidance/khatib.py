@@ -45,9 +45,20 @@ def avoidance_force(
         Components of the force on the robot (N).
     """
     distance = (dx * dx + dy * dy + SURFACE * SURFACE) ** 0.5
-    clearance = at_least(distance - radius, SURFACE)
-    push = gain * positive_part(1.0 / clearance - 1.0 / sensing_range) / (clearance * clearance * distance)
+    push = field_strength(at_least(distance - radius, SURFACE), sensing_range, gain, distance)
     return push * dx, push * dy
+
+
+def field_strength(clearance: Scalar, sensing_range: Scalar, gain: Scalar, distance: Scalar) -> Scalar:
+    """The force at a clearance ρ for every metre of the distance from what exerts it (N/m).
+
+    Args:
+        clearance: ρ, above 0 (m).
+        sensing_range: ρ0 (m).
+        gain: η (N m²).
+        distance: by which it is shared out to the components (m).
+    """
+    return gain * positive_part(1.0 / clearance - 1.0 / sensing_range) / (clearance * clearance * distance)
 
 
 def at_contact(dx: Scalar, dy: Scalar, radius: Scalar, footprint: Scalar) -> tuple[Scalar, Scalar, Scalar]:

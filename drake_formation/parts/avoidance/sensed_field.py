@@ -17,11 +17,16 @@ Robots = Annotated[tuple[int, ...], Field(strict=False)]
 """Numbers of robots, from 1."""
 
 
-class FieldConfig(Section):
-    """Range and strength of a field, and who feels it."""
+class FieldStrength(Section):
+    """Range and strength of a field."""
 
     range: Length = Field(default=1.3, description="sensing range ρ0 (m); inferred: 1.3")
     gain: NonNegative = Field(default=31.56, description="repulsive gain η (N m²); inferred: 31.56")
+
+
+class FieldConfig(FieldStrength):
+    """Range and strength of a field, and who feels it."""
+
     sensing: Literal["in_range", "nearest", "assigned"] = Field(
         default="in_range",
         description="in_range: every robot within range feels an obstacle; nearest: only the one nearest to it, "

@@ -8,13 +8,14 @@ from numpy.typing import ArrayLike
 from pydantic import Field
 from pydrake.systems.framework import BasicVector_, LeafSystem_
 
-from drake_formation.config.values import Length, NonNegative, Section
+from drake_formation.config.values import NonNegative
 from drake_formation.formation.formation import Formation
-from drake_formation.parts.avoidance.khatib import SURFACE, at_contact, avoidance_force
+from drake_formation.parts.avoidance.khatib import SURFACE, at_contact, avoidance_force, field_strength
+from drake_formation.parts.avoidance.sensed_field import FieldStrength
 from drake_formation.parts.part import Numbers, Part
 from drake_formation.parts.registry import part
 from drake_formation.systems.outlines import Layout, offsets
-from drake_formation.systems.scalars import Scalar, at_least, positive_part
+from drake_formation.systems.scalars import Scalar, at_least
 from drake_formation.systems.templates import block_template, in_double
 
 NEAREST = 0.1
@@ -42,7 +43,7 @@ def told_force(
     """
     distance = (dx * dx + dy * dy + SURFACE * SURFACE) ** 0.5
     clearance = at_least(distance - radius - footprint, NEAREST * sensing_range)
-    push = gain * positive_part(1.0 / clearance - 1.0 / sensing_range) / (clearance * clearance * distance)
+    push = field_strength(clearance, sensing_range, gain, distance)
     return push * dx, push * dy
 
 
@@ -137,11 +138,9 @@ class Shared(Part):
     to be in its slot beside the robot that hears, and to feel what it would feel there.
     """
 
-    class Config(Section):
+    class Config(FieldStrength):
         """Range and strength of the field, and how much what others feel counts."""
 
-        range: Length = Field(default=1.3, description="sensing range ρ0 (m); inferred: 1.3")
-        gain: NonNegative = Field(default=31.56, description="repulsive gain η (N m²); inferred: 31.56")
         share: NonNegative = Field(
             default=1.0, description="how much of the force on each robot heard is yielded to (1); 0 is khatib"
         )

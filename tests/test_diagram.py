@@ -9,11 +9,12 @@ from pydrake.systems.framework import InputPortSelection, OutputPortSelection
 from pydrake.systems.primitives import Linearize
 from strategies import generators, metres, random_state, scenarios
 
-from drake_formation.diagram import ROBOT_OUTPUTS, build_diagram
+from drake_formation.diagram import build_diagram
 from drake_formation.formation import graphs
 from drake_formation.parts.avoidance.khatib import avoidance_force
 from drake_formation.parts.tracking.costs import cost_matrix
 from drake_formation.parts.tracking.lqr import lqr_gain, robot_matrices
+from drake_formation.robot_diagram import ROBOT_OUTPUTS
 from drake_formation.scenario import ScenarioError, load_scenario, resolve, with_overrides
 
 few = settings(max_examples=25)

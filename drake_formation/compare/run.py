@@ -99,7 +99,7 @@ def run_one(run: Run) -> Outcome:
 
 def traffic(run: Run) -> tuple[int, float]:
     """Channels that some law reads, and messages a second over them: as often as packets are sent, or a law reads."""
-    from drake_formation.diagram import robot_diagram
+    from drake_formation.robot_diagram import robot_diagram
     from drake_formation.scenario import resolve
 
     formation = resolve(run.scenario)

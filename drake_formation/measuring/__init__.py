@@ -1,8 +1,7 @@
 """The figures by which a run is judged, each over the transport phase, between its samples too.
 
-One metric a file, such as ``consensus_error``, or a few of one kind, such as ``messages``. ``metric`` says what a metric
-is, ``transport`` what it looks at, ``registry`` which there are; ``control_law`` gives the control forces between
-samples.
+One metric a file, such as ``consensus_error``, or a few of one kind, such as ``messages``. ``metric`` says what one is,
+``transport`` what it looks at, ``registry`` which there are; ``control_law`` gives the control forces between samples.
 """
 
 import warnings

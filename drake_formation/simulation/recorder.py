@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydrake.systems.framework import Context, Diagram, EventStatus
 
-from drake_formation.diagram import DEMANDED, MEASURED, NODES, OBJECT_OUTPUTS, ROBOT_OPTIONS
+from drake_formation.diagram import NODES, OBJECT_OUTPUTS
 from drake_formation.failing import BROKEN_OUTPUTS, DRIVEN
 from drake_formation.formation.names import robot_name
+from drake_formation.robot_diagram import DEMANDED, MEASURED, ROBOT_OPTIONS
 
 Array = NDArray[np.float64]
 

@@ -6,9 +6,9 @@ from functools import reduce
 import numpy as np
 from numpy.typing import NDArray
 
-from drake_formation.diagram import ACCELERATION, DEMANDED, HEADING, MEASURED
 from drake_formation.failing import BROKEN_OUTPUTS, DRIVEN
 from drake_formation.parts.objects.breaking import breaks
+from drake_formation.robot_diagram import ACCELERATION, DEMANDED, HEADING, MEASURED
 from drake_formation.scenario import Scenario, resolve
 from drake_formation.simulation.acting import acting, may_let_go
 from drake_formation.simulation.choice import Choice

@@ -12,8 +12,11 @@ SHORT = {"aggregation.duration": 0.4, "transport.duration": 0.6, "simulator.max_
 NEAR = {
     "s_curve": {"transport.reference.points": [[1.8, 3.6]], "transport.goal": [1.95, 3.5], "consensus.delta": 5.0},
     "robot-failure": {"tracking.R": 1.0, "consensus.delta": 5.0, "consensus.delta_v": 5.0, "failures.0.time": 0.7},
+    "crowded": {"consensus.delta": 5.0, "consensus.delta_v": 5.0, "robots.start": {"centre": [2.0, 3.5]}},
 }
-"""A curve as much shorter as the time for it, a failure within that, and gains that steps of 0.05 s can follow."""
+"""A curve as much shorter as the time for it, a failure within that, robots that need not gather from afar, and gains
+that steps of 0.05 s can follow.
+"""
 ONE_ROBOT = {
     "formation": {"shape": "line", "robots": 1, "side": 1.0},
     "robots.start": [[0.0, 0.0]],

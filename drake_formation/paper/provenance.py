@@ -5,10 +5,10 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from drake_formation.markdown import markdown_table
-from drake_formation.paper.readings import PRINTED, PROBABLE
+from drake_formation.paper.readings.simulated import SIMULATED, passes
+from drake_formation.paper.readings.two_readings import PRINTED, PROBABLE
 from drake_formation.paper.runs import AGGREGATION_GAINS, FORMATIONS, GAINS, MATERIALS
 from drake_formation.paper.section import Part, Section
-from drake_formation.paper.simulated import SIMULATED, passes
 from drake_formation.scenario import Scenario, resolve, with_overrides
 
 Value = Callable[[Scenario], object]

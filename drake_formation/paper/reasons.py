@@ -2,8 +2,8 @@
 
 from drake_formation.measuring import Metrics
 from drake_formation.paper.published import published
-from drake_formation.paper.readings import READINGS, Place
-from drake_formation.paper.score import AGREES
+from drake_formation.paper.readings.score import AGREES
+from drake_formation.paper.readings.two_readings import READINGS, Place
 from drake_formation.paper.store import Measures
 from drake_formation.scenario import resolve
 

@@ -8,7 +8,7 @@ from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 
-from drake_formation.paper.readings import READINGS
+from drake_formation.paper.readings.two_readings import READINGS
 from drake_formation.paper.section import Section
 from drake_formation.paper.tables import Cell
 from drake_formation.places import Kind

@@ -3,9 +3,9 @@
 from drake_formation.config.errors import nearest
 from drake_formation.markdown import markdown_table
 from drake_formation.measuring import Metrics
-from drake_formation.paper.agreement import cell_rows
 from drake_formation.paper.measured import measured
 from drake_formation.paper.quantities import TABLES
+from drake_formation.paper.readings.agreement import cell_rows
 from drake_formation.paper.runs import GAINS, MATERIALS
 from drake_formation.paper.tables import cells
 from drake_formation.scenario import Scenario

@@ -6,21 +6,21 @@ from functools import partial
 from matplotlib.figure import Figure
 
 from drake_formation.diagram import build_diagram
-from drake_formation.paper import curves, paths, schematics
-from drake_formation.paper.agreement import agreement_part, table_part
 from drake_formation.paper.bandwidth import answer as bandwidth
 from drake_formation.paper.bandwidth.figure_23 import bandwidth_runs
-from drake_formation.paper.claims import claims_part
-from drake_formation.paper.explanations import explanations_part
+from drake_formation.paper.figures import curves, paths, schematics
 from drake_formation.paper.provenance import provenance_part
-from drake_formation.paper.readings import PROBABLE, READINGS
-from drake_formation.paper.rivals import rivals_part
+from drake_formation.paper.readings.agreement import agreement_part, table_part
+from drake_formation.paper.readings.explanations import explanations_part
+from drake_formation.paper.readings.rivals import rivals_part
+from drake_formation.paper.readings.two_readings import PROBABLE, READINGS
+from drake_formation.paper.readings.worth import hold_out_part, ingredients_part
 from drake_formation.paper.runs import AGGREGATION_GAINS, CASES, MATERIALS, TOPOLOGIES, aggregation
 from drake_formation.paper.section import Part, Runs, Section, figure, no_runs, picture
 from drake_formation.paper.sensitivity import sensitivity, sensitivity_runs
 from drake_formation.paper.store import Store
 from drake_formation.paper.trajectories import comparison, s_curve, s_curve_figure, trajectory_runs
-from drake_formation.paper.worth import hold_out_part, ingredients_part
+from drake_formation.paper.verdicts.claims import claims_part
 from drake_formation.scenario import Scenario, load_scenario
 
 

@@ -6,10 +6,10 @@ from types import MappingProxyType
 
 from drake_formation.paper.published import published
 from drake_formation.paper.quantities import TABLES, Measure, Quantity
-from drake_formation.paper.readings import READINGS, Place, Run
+from drake_formation.paper.readings.score import AGREES, agrees
+from drake_formation.paper.readings.two_readings import READINGS, Place, Run
 from drake_formation.paper.reasons import reason
 from drake_formation.paper.runs import CASES, MATERIALS
-from drake_formation.paper.score import AGREES, agrees
 from drake_formation.paper.store import Measures, Store
 from drake_formation.scenario import Scenario
 

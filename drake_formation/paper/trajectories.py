@@ -5,8 +5,8 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from drake_formation.markdown import markdown_table
-from drake_formation.paper.curves import phase, since_hand_off
-from drake_formation.paper.paths import draw_transport
+from drake_formation.paper.figures.curves import phase, since_hand_off
+from drake_formation.paper.figures.paths import draw_transport
 from drake_formation.paper.runs import transport
 from drake_formation.paper.store import Store
 from drake_formation.scenario import Scenario, load_scenario, with_overrides

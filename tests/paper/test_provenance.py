@@ -5,7 +5,7 @@ import pytest
 from drake_formation.paper import runs
 from drake_formation.paper.provenance import SCENARIOS, provenance
 from drake_formation.paper.published import published
-from drake_formation.paper.readings import PRINTED
+from drake_formation.paper.readings.two_readings import PRINTED
 from drake_formation.scenario import load_scenario
 
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from drake_formation.paper.agreement import MARK, number
-from drake_formation.paper.readings import READINGS
+from drake_formation.paper.readings.agreement import MARK, number
+from drake_formation.paper.readings.two_readings import READINGS
 from drake_formation.paper.rerun import Fresh
 from drake_formation.paper.tables import table
 

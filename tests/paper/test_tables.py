@@ -6,7 +6,7 @@ from same_figures import SameFigures
 from drake_formation.measuring import Metrics
 from drake_formation.paper.published import published
 from drake_formation.paper.quantities import TABLES, largest_robot
-from drake_formation.paper.readings import READINGS
+from drake_formation.paper.readings.two_readings import READINGS
 from drake_formation.paper.runs import CASES, GAINS, MATERIALS
 from drake_formation.paper.tables import all_entries, table, table_runs, transports
 

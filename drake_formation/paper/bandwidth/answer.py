@@ -10,7 +10,7 @@ from drake_formation.paper.bandwidth.findings import Findings, framework
 from drake_formation.paper.bandwidth.graphs import ROBOTS, covered
 from drake_formation.paper.bandwidth.runs import GAIN, formation, settings
 from drake_formation.paper.bandwidth.study import kept
-from drake_formation.paper.simulated import SIMULATED, Settings, passes
+from drake_formation.paper.readings.simulated import SIMULATED, Settings, passes
 from drake_formation.paper.store import Store
 from drake_formation.scenario import resolve
 

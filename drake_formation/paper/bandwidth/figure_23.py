@@ -7,7 +7,7 @@ from drake_formation.formation.rigidity import rigidity
 from drake_formation.markdown import markdown_table
 from drake_formation.measuring import Metrics
 from drake_formation.paper.bandwidth.runs import figure_23, formation
-from drake_formation.paper.readings import PRINTED, PROBABLE, Reading
+from drake_formation.paper.readings.two_readings import PRINTED, PROBABLE, Reading
 from drake_formation.paper.runs import MATERIALS
 from drake_formation.paper.store import Store
 from drake_formation.scenario import Scenario, resolve, with_overrides

@@ -14,8 +14,8 @@ import networkx as nx
 import numpy as np
 
 from drake_formation.formation.formation import Formation
+from drake_formation.paper.readings.simulated import SIMULATED, Settings, carried_on, passes
 from drake_formation.paper.runs import TOPOLOGIES, shipped, topology
-from drake_formation.paper.simulated import SIMULATED, Settings, carried_on, passes
 from drake_formation.scenario import Scenario, resolve, with_overrides
 
 LAWS = ("hookean", "linear")

@@ -1,0 +1,1 @@
+"""What became of the paper's claims, each with the number that decides it."""

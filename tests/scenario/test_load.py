@@ -67,7 +67,7 @@ def test_a_file_wins_over_a_name_and_a_folder_does_not(tmp_path, monkeypatch):
 
 
 def test_neither_a_file_nor_a_name(tmp_path):
-    shipped = "line, octagon, quadrilateral"
+    shipped = "lossy, octagon, quadrilateral, robot-failure"
     assert message_of("octagn").startswith("octagn: no such file or shipped scenario; allowed: a file, ")
     assert shipped in message_of("octagn")
     assert message_of("octagn").endswith("did you mean 'octagon'?")

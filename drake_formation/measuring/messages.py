@@ -21,9 +21,7 @@ sent = of_packets("messages_sent", "messages sent", "1", lambda packets: packets
 delivered = of_packets("messages_delivered", "messages delivered", "1", lambda packets: packets.delivered.sum())
 lost = of_packets("messages_lost", "messages lost", "1", lambda packets: packets.lost.sum())
 late = of_packets("messages_late", "messages too late to be used", "1", lambda packets: packets.late.sum())
-overtaken = of_packets(
-    "messages_overtaken", "messages overtaken by a later one", "1", lambda packets: packets.overtaken.sum()
-)
+overtaken = of_packets("messages_overtaken", "messages overtaken", "1", lambda packets: packets.overtaken.sum())
 bit_rate = of_packets(
     "bit_rate_bps", "bits sent a second", "bit/s", lambda packets: packets.bits.sum() / packets.duration
 )

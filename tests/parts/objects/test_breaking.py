@@ -150,6 +150,6 @@ def test_what_cannot_be_is_refused_with_its_place():
     with pytest.raises(ScenarioError, match=r"springs.break_at_strain\.2-1|springs.break_at_strain"):
         resolve(free(**{"springs.break_at_strain": [0.1, 0.2]}))
     with pytest.raises(ScenarioError, match=r"object.look_every: .*looks are too many"):
-        resolve(free(**{"object": {"kind": "springs", "look_every": 1e-12}}))
+        resolve(free(**{"object": {"kind": "springs", "look_every": 1e-12}, "springs.break_at_force": 1.0}))
     with pytest.raises(ScenarioError, match=r"springs.break_at_force"):
         free(**{"springs.break_at_force": 0.0})

@@ -16,10 +16,11 @@ from drake_formation.parts.tracking.lqr import lqr_force
 class Plant(LeafSystem):
     """A mass with spring ports."""
 
-    def __init__(self, neighbours, law, mass, springs, initial_state, *, load):
+    def __init__(self, neighbours, law, mass, springs, initial_state, *, load, **options):
         super().__init__()
         assert law is Hookean
         assert not load
+        assert not any(options.values())
         self.neighbours, self.mass, self.springs = neighbours, mass[0], springs
         self.DeclareVectorInputPort("force", 2)
         self.DeclareVectorInputPort("phase", 1)
@@ -101,12 +102,12 @@ class Consensus(LeafSystem):
 class Avoidance(LeafSystem):
     """The potential field."""
 
-    def __init__(self, field, obstacles, masked, law, neighbours):
+    def __init__(self, field, obstacles, masked, law, neighbours, *unused):
         super().__init__()
         assert law is avoidance_force
         assert not masked
         assert not neighbours
-        self.field, self.obstacles = field, obstacles
+        self.field, self.obstacles = field, np.reshape(obstacles, (-1, 3))
         self.DeclareVectorInputPort("state", 4)
         self.DeclareVectorInputPort("phase", 1)
         self.DeclareVectorOutputPort("force", 2, self.calc_force)

@@ -58,7 +58,7 @@ class Monolith(LeafSystem):
         for j, displacement in zip(self.heard[i], displacements, strict=True):
             force += consensus_force(*np.subtract(states[i], states[j]), *gains, *displacement)
         field, obstacles = self.numbers(i, "avoidance")
-        for x, y, radius in obstacles:
+        for x, y, radius in np.reshape(obstacles, (-1, 3)):
             force += avoidance_force(states[i][0] - x, states[i][1] - y, radius, *field)
         return force
 

@@ -71,8 +71,7 @@ def alone(start):
         has_medium=False,
         channels=SimpleNamespace(pairs=np.array([[0, 1]])),
         slots=np.zeros((2, 2)),
-        starts=np.array([[0.0, 0.0], start[:2]]),
-        start_velocities=np.zeros((2, 2)),
+        start_state=lambda robot: np.array([*start[:2], 0.0, 0.0]) if robot else np.zeros(4),
         begin=0.0,
         seed=0,
     )

@@ -120,7 +120,8 @@ def _beginnings(motion: Motion, pairs: _Pairs, carried_on: NDArray[np.bool_]) ->
         yield pairs.meeting(pair, float(times[0]), position[0])
     bulge = motion.bulge()[:, pairs.robots].sum(axis=-1)
     least = _least(gap, position, pairs, np.diff(times)[:, None], bulge)
-    for step, pair in np.argwhere((gap[:-1] > 0) & (least <= 0)).tolist():
+    looked_into = np.isfinite(least)  # not where a run diverges so far that squares of its numbers overflow
+    for step, pair in np.argwhere((gap[:-1] > 0) & (least <= 0) & looked_into).tolist():
         share = _first_share(motion, pairs, step, pair, (0.0, 1.0), float(bulge[step, pair]))
         if share is not None:
             time = float(times[step] + share * (times[step + 1] - times[step]))

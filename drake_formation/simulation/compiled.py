@@ -9,7 +9,7 @@ from drake_formation.lowering import CompiledDiagram, Status, lower
 from drake_formation.scenario import Scenario, ScenarioError, resolve
 from drake_formation.simulation.engine import Start
 from drake_formation.simulation.phases import Progress, felt_obstacles
-from drake_formation.simulation.recorder import NonFiniteStateError, RecordedPorts
+from drake_formation.simulation.recorder import FARTHEST, BeyondBoundsError, NonFiniteStateError, RecordedPorts
 
 Array = NDArray[np.float64]
 
@@ -100,6 +100,7 @@ class CompiledRun:
 
         Raises:
             NonFiniteStateError: the state is not finite any more.
+            BeyondBoundsError: error control cannot follow it any more.
             RuntimeError: the integrator gave up.
         """
         self.carry_out_updates()
@@ -122,6 +123,8 @@ class CompiledRun:
                 raise NonFiniteStateError
             if piece.status == Status.STEP_TOO_SMALL:
                 raise RuntimeError("its steps became too small to go on")
+            if not self.fixed_step and np.abs(piece.states).max(initial=0.0) > FARTHEST:
+                raise BeyondBoundsError
 
     def carry_out_updates(self) -> None:
         """Carry out the updates due now unless that is done, and record what they change."""

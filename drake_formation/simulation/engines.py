@@ -1,5 +1,6 @@
 """What carries a run forward in time: Drake's Simulator, or the diagram compiled."""
 
+import math
 from collections.abc import Callable
 
 from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
@@ -8,7 +9,7 @@ from pydrake.systems.framework import Context, Diagram
 from drake_formation.scenario import Scenario, resolve
 from drake_formation.simulation.engine import Start
 from drake_formation.simulation.phases import Progress
-from drake_formation.simulation.recorder import Recorder
+from drake_formation.simulation.recorder import FARTHEST, Recorder
 
 
 def blocks(diagram: Diagram) -> Start:
@@ -51,11 +52,12 @@ ENGINES: dict[str, Callable[[Diagram], Start]] = {
 
 class _Blocks:
     def __init__(self, scenario: Scenario, diagram: Diagram, context: Context, progress: Progress | None) -> None:
-        self.recording = Recorder(diagram, resolve(scenario).robots, progress)
         self._simulator = Simulator(diagram, context)
         config = SimulatorConfig(**scenario.simulator.model_dump())
         config.start_time = context.get_time()  # Drake's would overwrite it, and it may be at the hand-off
         ApplySimulatorConfig(config, self._simulator)
+        farthest = math.inf if self.fixed_step else FARTHEST
+        self.recording = Recorder(diagram, resolve(scenario).robots, progress, farthest)
         self._simulator.set_monitor(self.recording)
         self._started = False
 

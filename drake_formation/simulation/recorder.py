@@ -32,8 +32,16 @@ TRAFFIC_PORT = re.compile(r"channel_(\d+)_to_(\d+)_traffic")
 """An output port of channels that carry packets, by the numbers of speaker and listener."""
 
 
+FARTHEST = 1e12
+"""Where error control gives up (m, m/s); it would take ever shorter steps there, for an accuracy that is rounding."""
+
+
 class NonFiniteStateError(ArithmeticError):
     """A robot's state is no longer finite."""
+
+
+class BeyondBoundsError(ArithmeticError):
+    """A robot's state is beyond where error control can follow it."""
 
 
 class Recording(Protocol):
@@ -130,13 +138,20 @@ class Recorder(RecordedPorts):
         diagram: a formation diagram.
         robots: number of robots N.
         progress: called with the simulated time (s) after every step.
+        farthest: where to give up (m, m/s).
     """
 
-    def __init__(self, diagram: Diagram, robots: int, progress: Callable[[float], None] | None = None) -> None:
+    def __init__(
+        self,
+        diagram: Diagram,
+        robots: int,
+        progress: Callable[[float], None] | None = None,
+        farthest: float = np.inf,
+    ) -> None:
         super().__init__(diagram, robots)
         self._ports = {name: [diagram.GetOutputPort(port) for port in its] for name, its in self.ports.items()}
         self._phase = diagram.GetOutputPort("phase")
-        self._progress = progress
+        self._progress, self._farthest = progress, farthest
         self._times: list[float] = []
         self._phases: list[float] = []
         self._samples: dict[str, list[Array]] = {name: [] for name in self._ports}
@@ -146,11 +161,14 @@ class Recorder(RecordedPorts):
 
         Raises:
             NonFiniteStateError: a state is infinite or not a number; the sample is not kept.
+            BeyondBoundsError: a state is beyond the farthest, and the sample is not kept either.
         """
         time = context.get_time()
         sample = {name: np.array([_shown(port, context) for port in ports]) for name, ports in self._ports.items()}
         if not np.isfinite(sample["state"]).all():
             raise NonFiniteStateError
+        if np.abs(sample["state"]).max() > self._farthest:
+            raise BeyondBoundsError
         if self._times and self._times[-1] == time:
             self._drop_last()
         self._times.append(time)

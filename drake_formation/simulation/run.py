@@ -25,7 +25,7 @@ from drake_formation.simulation.engine import Engine, Start
 from drake_formation.simulation.engines import ENGINES
 from drake_formation.simulation.obstacles import Leap, first_hit, worst_leap
 from drake_formation.simulation.phases import Progress, felt_obstacles, without_obstacles
-from drake_formation.simulation.recorder import NonFiniteStateError, Recording
+from drake_formation.simulation.recorder import FARTHEST, BeyondBoundsError, NonFiniteStateError, Recording
 from drake_formation.simulation.result import labelled_result
 from drake_formation.simulation.series import Series, time_series
 
@@ -296,6 +296,7 @@ _FAILURES = (RuntimeError, ArithmeticError, SystemExit)
 def _reason(failure: BaseException) -> str:
     reasons: dict[type[BaseException], str] = {
         NonFiniteStateError: "its state is no longer finite",
+        BeyondBoundsError: f"its state grew beyond {FARTHEST:g} (m, m/s)",
         ZeroDivisionError: "it met another robot",
         OverflowError: "its forces grew beyond all bounds",
     }

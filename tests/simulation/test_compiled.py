@@ -53,6 +53,16 @@ def test_a_run_that_diverges_keeps_what_was_recorded():
     assert np.isfinite(caught.value.partial["position"]).all()
 
 
+def test_a_run_that_error_control_would_follow_in_ever_shorter_steps_is_given_up():
+    """Commands held for half a second are far too late for such gains."""
+    held = {"kind": "packets", "period": 0.5}
+    overrides = {"consensus.delta": 1e4, "consensus.channel": held, "avoidance.obstacles": []}
+    with pytest.raises(SimulationError, match=r"its state grew beyond 1e\+12") as caught:
+        simulate(load_scenario("line", overrides=overrides), engine="compiled")
+    last = np.abs(caught.value.partial["velocity"].values[-1]).max()
+    assert last > 1e6
+
+
 @pytest.mark.parametrize("name", ["line", "quadrilateral"])
 def test_the_exponential_engine_passes_through_the_same_states(name):
     scenario = load_scenario(name, overrides=SHORT)

@@ -1,10 +1,12 @@
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
 from pydrake.systems.framework import EventStatus
 
 from drake_formation.diagram import build_diagram
 from drake_formation.scenario import load_scenario
-from drake_formation.simulation.recorder import RECORDED, NonFiniteStateError, Recorder
+from drake_formation.simulation.recorder import RECORDED, BeyondBoundsError, NonFiniteStateError, Recorder
 
 
 @pytest.fixture
@@ -55,6 +57,16 @@ def test_a_state_that_is_not_finite_is_not_kept(diagram, context, value):
     with pytest.raises(NonFiniteStateError):
         recorder(context)
     assert recorder.times.tolist() == [0]
+
+
+def test_a_state_beyond_the_farthest_is_not_kept(diagram, context):
+    recorder = Recorder(diagram, 2, farthest=100.0)
+    for last, kept in ((100.0, True), (-100.1, False)):
+        context.SetTime(abs(last))
+        context.SetContinuousState([last, *np.ones(7)])
+        with nullcontext() if kept else pytest.raises(BeyondBoundsError):
+            recorder(context)
+    assert recorder.times.tolist() == [100.0]
 
 
 def test_an_empty_record_has_the_shape_of_none(diagram):

@@ -54,6 +54,16 @@ class FormationAccessor:
     def __init__(self, result: xr.Dataset) -> None:
         self._result = result
 
+    def __repr__(self) -> str:
+        """The name of the run, and what it has: for where nothing better can be shown."""
+        return f"<result of {self._result.attrs.get('title')}: scenario, metrics, events, to_dataframe, to_csv, …>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        from drake_formation.display.result import result_html
+
+        return result_html(self._result)
+
     @property
     def scenario(self) -> "Scenario":
         """What ran."""

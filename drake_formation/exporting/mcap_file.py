@@ -11,7 +11,8 @@ import numpy as np
 
 from drake_formation.exporting import foxglove
 from drake_formation.exporting.errors import required
-from drake_formation.exporting.foxglove import LINE_STRIP, Message, Schema
+from drake_formation.exporting.foxglove import LINE_STRIP, Message
+from drake_formation.exporting.foxglove_schemas import FRAME_TRANSFORMS, SCENE_UPDATE, Schema
 from drake_formation.exporting.scene import WORLD, Scene
 from drake_formation.exporting.signals import Signals, signals
 
@@ -49,9 +50,9 @@ def write_mcap(result: "xr.Dataset", path: str | Path) -> None:
     """
     writing = required("mcap.writer", "export")
     scene, told = Scene(result), list(signals(result))
-    schemas: dict[str, tuple[str, Schema]] = {"/tf": ("foxglove.FrameTransforms", foxglove.FRAME_TRANSFORMS)}
-    schemas |= dict.fromkeys(("/scene", "/paths"), ("foxglove.SceneUpdate", foxglove.SCENE_UPDATE))
-    schemas |= {f"/{name}": ("foxglove.SceneUpdate", foxglove.SCENE_UPDATE) for name, _ in scene.lines()}
+    schemas: dict[str, tuple[str, Schema]] = {"/tf": ("foxglove.FrameTransforms", FRAME_TRANSFORMS)}
+    schemas |= dict.fromkeys(("/scene", "/paths"), ("foxglove.SceneUpdate", SCENE_UPDATE))
+    schemas |= {f"/{name}": ("foxglove.SceneUpdate", SCENE_UPDATE) for name, _ in scene.lines()}
     schemas |= {f"/{signal.topic}": (f"drake_formation.{signal.topic}", _schema(signal)) for signal in told}
     with Path(path).open("wb") as file:
         writer = writing.Writer(file)

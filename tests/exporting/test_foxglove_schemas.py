@@ -5,7 +5,7 @@ from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 from google.protobuf.descriptor import FieldDescriptor as Field
 
-from drake_formation.exporting import foxglove
+from drake_formation.exporting import foxglove_schemas as ours
 
 TIMES = {"google.protobuf.Timestamp": "time", "google.protobuf.Duration": "duration"}
 PLAIN = {
@@ -41,7 +41,7 @@ def own(schema):
 
 
 @pytest.mark.parametrize(
-    ("schema", "theirs"), [(foxglove.SCENE_UPDATE, SceneUpdate), (foxglove.FRAME_TRANSFORMS, FrameTransforms)]
+    ("schema", "theirs"), [(ours.SCENE_UPDATE, SceneUpdate), (ours.FRAME_TRANSFORMS, FrameTransforms)]
 )
 def test_schemas_have_the_fields_that_foxglove_publishes(schema, theirs):
     assert own(schema) == (theirs.DESCRIPTOR.full_name, published(theirs.DESCRIPTOR))

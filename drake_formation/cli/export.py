@@ -35,6 +35,7 @@ def export(
         stop(f"nothing to write; give one or more of {', '.join(f'--{name} FILE' for name in wanted)}", WRONG_INPUT)
     if of != "robot" and csv is None:
         stop("--of goes with --csv FILE", WRONG_INPUT)
+    from drake_formation.optional import MissingPackageError
     from drake_formation.places import OutputError, reason, reserved_file
     from drake_formation.results import load_result
     from drake_formation.simulation.result import series_of
@@ -53,7 +54,7 @@ def export(
             with reserved_file(file) as place:
                 write[name](place)
             say(f"Result in {file}.")
-    except (ValueError, OutputError) as error:
+    except (ValueError, OutputError, MissingPackageError) as error:
         stop(str(error), WRONG_INPUT)
     except OSError as error:  # while it is written, such as a full disk
         stop(f"{', '.join(map(str, files.values()))}: cannot be written: {reason(error)}", WRONG_INPUT)

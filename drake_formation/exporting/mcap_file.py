@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from drake_formation.exporting import foxglove
-from drake_formation.exporting.errors import required
 from drake_formation.exporting.foxglove import LINE_STRIP, Message
 from drake_formation.exporting.foxglove_schemas import FRAME_TRANSFORMS, SCENE_UPDATE, Schema
 from drake_formation.exporting.scene import WORLD, Scene
 from drake_formation.exporting.signals import Signals, signals
+from drake_formation.optional import required
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -44,7 +44,7 @@ def write_mcap(result: "xr.Dataset", path: str | Path) -> None:
         path: where; Foxglove wants it to end in .mcap.
 
     Raises:
-        ExportError: the package mcap is not installed.
+        MissingPackageError: the package mcap is not installed.
         ValueError, ScenarioError: it is not a result of this version.
         OSError: it cannot be written.
     """

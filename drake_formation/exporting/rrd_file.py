@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drake_formation.exporting.errors import required
 from drake_formation.exporting.scene import WORLD, Lines, Scene
 from drake_formation.exporting.shapes import Piece
 from drake_formation.exporting.signals import signals
+from drake_formation.optional import required
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,7 +31,7 @@ def write_rrd(result: "xr.Dataset", path: str | Path) -> None:
         path: where; Rerun wants it to end in .rrd.
 
     Raises:
-        ExportError: the package rerun-sdk is not installed.
+        MissingPackageError: the package rerun-sdk is not installed.
         ValueError, ScenarioError: it is not a result of this version.
         OSError: it cannot be written.
     """

@@ -10,7 +10,7 @@ from mcap.reader import make_reader
 from short_runs import lossy, short
 
 from drake_formation import simulate
-from drake_formation.exporting.errors import ExportError
+from drake_formation.optional import MissingPackageError
 
 THE_OBJECT = "{kind: rigid, mass: 20.0}"
 
@@ -84,5 +84,5 @@ def test_what_channels_tell_is_there(tmp_path):
 
 def test_a_missing_package_is_named_with_what_brings_it(tmp_path, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "mcap.writer", None)
-    with pytest.raises(ExportError, match=r"pip install 'drake-formation\[export\]'"):
+    with pytest.raises(MissingPackageError, match=r"pip install 'drake-formation\[export\]'"):
         short().formation.to_mcap(tmp_path / "run.mcap")

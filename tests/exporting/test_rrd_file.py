@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from short_runs import short
 
-from drake_formation.exporting.errors import ExportError
+from drake_formation.optional import MissingPackageError
 
 
 def test_a_recording_has_what_is_seen_and_every_number(tmp_path):
@@ -28,5 +28,5 @@ def test_a_recording_has_what_is_seen_and_every_number(tmp_path):
 
 def test_a_missing_package_is_named_with_what_brings_it(tmp_path, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "rerun", None)
-    with pytest.raises(ExportError, match=r"pip install 'drake-formation\[rerun\]'"):
+    with pytest.raises(MissingPackageError, match=r"pip install 'drake-formation\[rerun\]'"):
         short().formation.to_rrd(tmp_path / "run.rrd")

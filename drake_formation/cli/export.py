@@ -36,7 +36,8 @@ def export(
     if of != "robot" and csv is None:
         stop("--of goes with --csv FILE", WRONG_INPUT)
     from drake_formation.optional import MissingPackageError
-    from drake_formation.places import OutputError, reason, reserved_file
+    from drake_formation.places import OutputError, reserved_file
+    from drake_formation.places.errors import explained
     from drake_formation.results import load_result
     from drake_formation.simulation.result import series_of
 
@@ -51,10 +52,8 @@ def export(
             "rrd": own.to_rrd,
         }
         for name, file in files.items():
-            with reserved_file(file) as place:
+            with reserved_file(file) as place, explained(file):
                 write[name](place)
             say(f"Result in {file}.")
     except (ValueError, OutputError, MissingPackageError) as error:
         stop(str(error), WRONG_INPUT)
-    except OSError as error:  # while it is written, such as a full disk
-        stop(f"{', '.join(map(str, files.values()))}: cannot be written: {reason(error)}", WRONG_INPUT)

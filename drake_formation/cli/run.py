@@ -48,6 +48,7 @@ def run(
     from drake_formation.lowering.errors import LoweringError
     from drake_formation.measuring import metrics
     from drake_formation.places import PICTURES, OutputError, reserved, reserved_file
+    from drake_formation.places.errors import explained
     from drake_formation.simulation import SimulationError, events
     from drake_formation.viz.errors import FilmError
 
@@ -67,8 +68,9 @@ def run(
                 stop("\n".join([str(error), *kept.remarks(), recorded]), FAILED_RUN)
             written = write_run(place, resolved, result, figures)
             shoot(result)
-            if table:
-                write_csv(result, table)
+            if csv and table:
+                with explained(csv):
+                    write_csv(result, table)
         checked = _check_with_progress(resolved, result) if check else None
         if checked:
             write_check(written.folder, checked)

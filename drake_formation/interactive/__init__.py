@@ -1,6 +1,7 @@
 """A scenario with sliders, in a notebook.
 
-- ``panel``: the sliders and what they redraw; what is public.
+- ``panel`` makes one; it is what is public.
+- ``widget``: the sliders and what they redraw.
 - ``knobs``: which sliders there are.
 - ``runs``: runs of variants, each of which needs no new diagram unless it is of another structure.
 - ``picture``: a picture of which only what changes is drawn anew.
@@ -9,7 +10,7 @@
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from drake_formation.interactive.panel import Panel
+    from drake_formation.interactive.widget import Panel
     from drake_formation.scenario import Scenario
 
 __all__ = ["panel"]
@@ -26,7 +27,7 @@ def panel(scenario: "Scenario") -> "Panel":
         scenario: what to begin with; its channels must carry packets if there is to be a slider for their loss.
 
     Returns:
-        A widget that a notebook shows; see :class:`drake_formation.interactive.panel.Panel`.
+        A widget that a notebook shows; see :class:`drake_formation.interactive.widget.Panel`.
 
     Raises:
         MissingPackageError: the package ipywidgets is not installed.
@@ -35,6 +36,6 @@ def panel(scenario: "Scenario") -> "Panel":
     from drake_formation.optional import required
 
     required("ipywidgets", "notebook")
-    from drake_formation.interactive.panel import Panel
+    from drake_formation.interactive.widget import Panel
 
     return Panel(scenario)

@@ -1,7 +1,9 @@
 """``export`` writes a result in each format, ``run --csv`` a table beside the run; what is wrong is refused in time."""
 
+import errno
 from pathlib import Path
 
+from drake_formation.exporting import csv_file
 from drake_formation.viz import run_figures
 
 SHORT = ["--set", "aggregation.duration=1", "--set", "transport.duration=2"]
@@ -22,6 +24,21 @@ def test_a_run_has_a_table_and_its_folder_is_exported(cli, monkeypatch):
     assert Path("springs.csv").read_text().startswith("time (s),spring,spring_length (m)")
     status, _, err = cli("export", "run", "--csv", "nodes.csv", "--of", "node")
     assert (status, "no rows of 'node'" in err, Path("nodes.csv").exists()) == (2, True, False)
+
+
+def test_a_disk_that_is_full_is_named_and_leaves_nothing(cli, monkeypatch):
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(run_figures, "write_figures", lambda *_: {})
+    monkeypatch.setattr(csv_file, "write_csv", full)
+    status, _, err = cli("run", "line", *SHORT, "--out", "run", "--csv", "run.csv")
+    assert status == 2
+    assert "run.csv: cannot be written: No space left" in err
+    assert not list(Path().glob("*.csv"))
+    status, _, err = cli("export", "run", "--csv", "run.csv")
+    assert status == 2
+    assert "run.csv: cannot be written: No space left" in err
 
 
 def test_what_cannot_be_exported_is_named(cli):

@@ -9,7 +9,7 @@ from PIL import Image
 from short_runs import SECONDS
 from shown import Shown
 
-from drake_formation import load_scenario, metrics, simulate, with_overrides
+from drake_formation import interactive, load_scenario, metrics, simulate, with_overrides
 from drake_formation.interactive import panel, runs
 from drake_formation.optional import MissingPackageError
 
@@ -30,6 +30,7 @@ def test_a_slider_shows_the_run_of_the_scenario_it_says(line):
     assert {path: slider.value for path, slider in shown.sliders.items()} == {
         "consensus.delta": 0.0, "consensus.delta_v": 0.0, "springs.stiffness": pytest.approx(1.45)
     }  # fmt: skip
+    assert interactive.panel is panel  # and no module of its name
     before = shown.picture
     shown.sliders["consensus.delta"].value = 100.0
     shown.sliders["springs.stiffness"].value = 1e3

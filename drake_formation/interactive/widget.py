@@ -22,9 +22,10 @@ if TYPE_CHECKING:
 
 
 class Panel(widgets.VBox):  # type: ignore[misc]
-    """Sliders, a picture, the metrics and a line that says how long it took; see :func:`panel`.
+    """Sliders, a picture, the metrics and a line that says how long it took.
 
-    A run that fails or takes longer than 5 s leaves the picture as it was, and the line says why.
+    :func:`drake_formation.interactive.panel` makes one. A run that fails or takes longer than 5 s leaves the picture as
+    it was, and the line says why.
 
     Args:
         scenario: what to begin with.

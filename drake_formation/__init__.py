@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from drake_formation.diagram import build_diagram
     from drake_formation.measuring.check import Check, check
     from drake_formation.parameters import set_parameters
+    from drake_formation.results import load_result
     from drake_formation.scenario import Scenario, ScenarioError, load_scenario, with_overrides
     from drake_formation.simulation import SimulationError, simulate
 
@@ -29,6 +30,7 @@ __all__ = [
     "SimulationError",
     "build_diagram",
     "check",
+    "load_result",
     "load_scenario",
     "metrics",
     "set_parameters",
@@ -38,6 +40,7 @@ __all__ = [
 
 _HOMES = {
     "build_diagram": "diagram",
+    "load_result": "results",
     "set_parameters": "parameters",
     **dict.fromkeys(["Scenario", "ScenarioError", "load_scenario", "with_overrides"], "scenario"),
     **dict.fromkeys(["SimulationError", "simulate"], "simulation"),

@@ -11,6 +11,7 @@ from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort, Syste
 from pydrake.systems.primitives import ConstantVectorSource
 
 from drake_formation.blocks import added, added_unless_wire, input_names
+from drake_formation.display.diagram import show_diagrams
 from drake_formation.failing import Failing
 from drake_formation.formation.formation import Formation
 from drake_formation.formation.names import channel_name, robot_name
@@ -29,6 +30,9 @@ OBJECT_OUTPUTS = ("pose", "strain")
 
 NODES = "nodes"
 """An output port of such objects as are a grid of nodes, likewise."""
+
+
+show_diagrams()
 
 
 def build_diagram(scenario: Scenario) -> Diagram:
@@ -98,6 +102,7 @@ def wired(formation: Formation) -> Diagram:
     diagram = builder.Build()
     diagram.set_name(formation.name)
     diagram.structure = structure(formation)  # set_parameters compares
+    diagram.formation = formation  # for who looks at it in a notebook
     return diagram
 
 

@@ -136,6 +136,12 @@ class Certificate:
             if section in self.sections and getattr(self.sections[section], value) is None
         ]
 
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        from drake_formation.display.certificate import certificate_html
+
+        return certificate_html(self)
+
     def to_dict(self) -> dict[str, Any]:
         """Plain values; null where a section has no answer (see ``unanswered``) or a margin no limit (``no_limit``)."""
         answers = {name: _plain(self.sections.get(name)) for name in SECTIONS}

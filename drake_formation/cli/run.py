@@ -1,5 +1,6 @@
 """``drake-formation run``: a scenario, from its file to its metrics, result, diagram and figures."""
 
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -35,19 +36,29 @@ def run(
         Path | None,
         typer.Option("--animate", parser=path, metavar="FILE", help="Write a film too; ends in .mp4 or .gif."),
     ] = None,
+    csv: Annotated[
+        Path | None,
+        typer.Option(parser=path, metavar="FILE", help="Write a table too: a line for every time and robot."),
+    ] = None,
     check: Annotated[bool, typer.Option("--check", help="Run it again, more accurately, and compare.")] = False,
 ) -> None:
     """Run a scenario and write its metrics, result, diagram and figures."""
     from drake_formation.cli.run_folder import RUN, write_check, write_failed_run, write_run
+    from drake_formation.exporting.csv_file import write_csv
     from drake_formation.lowering.errors import LoweringError
     from drake_formation.measuring import metrics
-    from drake_formation.places import PICTURES, OutputError, reserved
+    from drake_formation.places import PICTURES, OutputError, reserved, reserved_file
+    from drake_formation.places.errors import explained
     from drake_formation.simulation import SimulationError, events
     from drake_formation.viz.errors import FilmError
 
     resolved = load_scenario(scenario, overrides=overrides)
     try:
-        with filming(film) as shoot, reserved(out or Path("out") / resolved.name, RUN) as place:
+        with (
+            filming(film) as shoot,
+            reserved_file(csv) if csv else nullcontext() as table,
+            reserved(out or Path("out") / resolved.name, RUN) as place,
+        ):
             try:
                 result = simulate_with_progress(resolved, engine)
                 figures = metrics(result)
@@ -57,6 +68,9 @@ def run(
                 stop("\n".join([str(error), *kept.remarks(), recorded]), FAILED_RUN)
             written = write_run(place, resolved, result, figures)
             shoot(result)
+            if csv and table:
+                with explained(csv):
+                    write_csv(result, table)
         checked = _check_with_progress(resolved, result) if check else None
         if checked:
             write_check(written.folder, checked)
@@ -66,8 +80,8 @@ def run(
     remark = [str(result.attrs["remark"])] if "remark" in result.attrs else []
     where = f"Results in {written.folder}, pictures in {written.folder / PICTURES}."
     warned = [f"warning: {warning}" for warning in warnings(resolved)]
-    reel = [f"Film in {film}."] if film else []
-    say("\n".join([*map(str, events(result)), *warned, *remark, *written.remarks(), where, *reel]))
+    beside = [*([f"Film in {film}."] if film else []), *([f"Table in {csv}."] if csv else [])]
+    say("\n".join([*map(str, events(result)), *warned, *remark, *written.remarks(), where, *beside]))
 
 
 def _check_with_progress(scenario: Scenario, result: "xr.Dataset") -> "Check":

@@ -10,12 +10,13 @@ from drake_formation.diagram import build_diagram
 from drake_formation.measuring import Metrics
 from drake_formation.measuring.check import Check
 from drake_formation.places import PICTURES, Kind, Place, Written, written
+from drake_formation.results import RESULT
 from drake_formation.scenario import Scenario, to_yaml
 from drake_formation.simulation.events import events
 from drake_formation.viz.graphviz import write_diagram
 from drake_formation.viz.style import attempt_each
 
-RESULT, SCENARIO, METRICS, FAILURE = "result.nc", "scenario.yaml", "metrics.json", "failure.txt"
+SCENARIO, METRICS, FAILURE = "scenario.yaml", "metrics.json", "failure.txt"
 EVENTS = "events"
 """The key of what happened, beside the metrics."""
 DIAGRAMS = ("diagram.dot", "diagram.svg")

@@ -75,20 +75,10 @@ def _result(source: str, overrides: list[str] | None) -> "xr.Dataset":
         ValueError: it is a result that cannot be read, or values of it are to be replaced.
         ScenarioError, SimulationError: the scenario is wrong, or the run failed.
     """
-    from drake_formation.cli.run_folder import RESULT
-    from drake_formation.places import reason
+    from drake_formation.results import RESULT, load_result
 
-    file = Path(source)
-    if (file / RESULT).is_file():
-        file = file / RESULT
-    if file.suffix != Path(RESULT).suffix:
+    if Path(source).suffix != Path(RESULT).suffix and not (Path(source) / RESULT).is_file():
         return simulate_with_progress(load_scenario(source, overrides=overrides))
     if overrides:
         raise ValueError(f"{source}: a result is shown as it is; --set goes with a scenario")
-    import xarray as xr
-
-    try:
-        with xr.open_dataset(file, engine="netcdf4") as result:
-            return result.load()
-    except OSError as error:
-        raise ValueError(f"{source}: cannot be read: {reason(error)}") from error
+    return load_result(source)

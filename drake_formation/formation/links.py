@@ -43,6 +43,12 @@ class Edges:
         """Of every robot, ascending: the order of its ports."""
         return tuple(tuple(graphs.neighbours(self.graph, i)) for i in range(self.robots))
 
+    def _repr_svg_(self) -> str:
+        """What a notebook shows."""
+        from drake_formation.display.graph import graph_svg
+
+        return graph_svg(self.robots, springs=[(i, j) for i, j in self.pairs.tolist()])
+
     def incident(self, robot: int) -> list[int]:
         """Rows of ``pairs`` of a robot's edges, in the order of its neighbours."""
         return [self._rows[min(robot, j), max(robot, j)] for j in self.neighbours[robot]]
@@ -80,6 +86,12 @@ class Channels:
         for array in (pairs, weights):
             array.setflags(write=False)
         return cls(robots, pairs, weights)
+
+    def _repr_svg_(self) -> str:
+        """What a notebook shows."""
+        from drake_formation.display.graph import graph_svg
+
+        return graph_svg(self.robots, channels=[(i, j) for i, j in self.pairs.tolist()])
 
     @cached_property
     def labels(self) -> tuple[str, ...]:

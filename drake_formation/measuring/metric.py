@@ -118,6 +118,12 @@ class Metrics(Mapping[str, Value]):
     def __repr__(self) -> str:
         return f"Metrics({', '.join(f'{name}={value}' for name, value in self._values.items())})"
 
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        from drake_formation.display.result import metrics_html
+
+        return metrics_html(self)
+
     def to_dict(self) -> dict[str, Value]:
         """The figures by name."""
         return dict(self._values)

@@ -279,6 +279,12 @@ class Scenario(Section):
             written.pop("springs", None)
         return written
 
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        from drake_formation.display.scenario import scenario_html
+
+        return scenario_html(self)
+
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled as what was written: sections follow the parts there are, and have no place in a module."""
         return type(self).model_validate, (self.model_dump(exclude_unset=True),)

@@ -96,6 +96,8 @@ def labelled_result(series: Series) -> "xr.Dataset":
     """
     import xarray as xr  # slow to import, and not needed to build a diagram
 
+    import drake_formation.results  # noqa: F401 (gives the result its ``formation``)
+
     variables = {
         name: xr.Variable(dimensions, series[name], {"units": units, "long_name": meaning})
         for name, (dimensions, units, meaning) in (VARIABLES | SOMETIMES | FAILING_VARIABLES).items()

@@ -29,6 +29,12 @@ class GraphPoint:
     spectrum: tuple[float, ...]
     bound_m: float
 
+    def _repr_svg_(self) -> str:
+        """What a notebook shows."""
+        from drake_formation.display.topology import graph_point_svg
+
+        return graph_point_svg(self)
+
     def to_dict(self) -> dict[str, Any]:
         """Plain values, units in the keys."""
         return {
@@ -59,6 +65,12 @@ class CheapestGraph:
     least_channels: int
     optimal: bool
     proof: str
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        from drake_formation.display.topology import cheapest_graph_html
+
+        return cheapest_graph_html(self)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values, units in the keys."""
@@ -98,6 +110,12 @@ class ParetoFront:
             if not kept or point.error_m < kept[-1].error_m * (1 - 1e-6):
                 kept.append(point)
         return tuple(kept)
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        from drake_formation.display.topology import pareto_front_html
+
+        return pareto_front_html(self)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values, units in the keys."""

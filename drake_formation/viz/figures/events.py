@@ -9,7 +9,8 @@ from drake_formation.simulation.events import HAND_OFF, Event, events
 
 MARKERS = ("*", "P", "D", "v", "^", "h", "<", ">")
 """One for each kind, in order of what happened first."""
-COLOUR = "crimson"
+COLOUR = "black"
+"""No robot has it."""
 MOST_TIMES = 3
 """A legend tells as many times of one kind; of more it counts them."""
 

@@ -9,7 +9,7 @@ HAND_OFF = 10.0
 
 
 def made_up_run(robots=8, *, stiff=True, gathering_force=1.8e5):
-    """A result of robots on a circle; stiff, it rings faster than a picture has pixels, and gathers with great force."""
+    """A result of robots on a circle, which gather with great force; if stiff, they ring faster than pixels follow."""
     time = np.linspace(0.0, 40.0, 8001)
     carried = time >= HAND_OFF
     since = np.maximum(time - HAND_OFF, 0.0)

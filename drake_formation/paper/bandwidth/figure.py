@@ -41,7 +41,7 @@ def _panel(axes: Axes, robots: int, found: Findings) -> None:
     axes.yaxis.set_major_formatter("{x:g}")
     axes.set_xticks(range(fewest, most + 1, 2 * -(-(most - fewest) // 16)))  # channels come in pairs
     axes.set_xlim(fewest - 1, most + 1)
-    axes.set_title(f"{robots} robots: rigid with {needed} channels or more", fontsize="medium")
+    axes.set_title(f"{robots} robots: rigid with {needed} channels or more", fontsize="small")
 
 
 def _points(axes: Axes, tried: list[Tried], law: str, marker: str, colour: str, label: str) -> None:

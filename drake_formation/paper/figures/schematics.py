@@ -44,7 +44,7 @@ def topologies() -> Figure:
         scenario = topology(name)
         graph = resolve(scenario).channels.graph
         draw_graph(axes, resolve(scenario).slots, graph)
-        axes.set_title(f"{name}\nλ₂ = {graphs.algebraic_connectivity(graph):.3g}")
+        axes.set_title(f"{name}\nλ₂ = {graphs.algebraic_connectivity(graph):.3g}", fontsize="small")
     return figure
 
 

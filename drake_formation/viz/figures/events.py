@@ -23,7 +23,7 @@ def draw_events(axes: Axes, result: xr.Dataset) -> None:
     for (kind, its), marker in zip(_by_kind(result).items(), cycle(MARKERS), strict=False):
         x, y = zip(*(event.place for event in its), strict=True)
         label = f"{kind.replace('_', ' ')}, {_when(its)}"
-        (marks,) = axes.plot(x, y, marker, color=COLOUR, markersize=8, label=label, zorder=5)
+        (marks,) = axes.plot(x, y, marker, color=COLOUR, markersize=6, label=label, zorder=5)
         marks.set(markeredgecolor="white", markeredgewidth=0.7)
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from io import BytesIO
 from typing import Any, Literal
 
 import numpy as np
@@ -9,7 +10,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from drake_formation.viz.style import own_style
+from drake_formation.viz.style import Drawn, figure_of, own_style
 
 Width = Literal["column", "page"]
 
@@ -23,8 +24,30 @@ ROWS: dict[Width, float] = {"column": 36.0, "page": 43.0}
 """Of axes below each other (mm)."""
 TITLE, LINE = 7.0, 4.2
 """Heights of a figure's title and of a line in a legend (mm)."""
+NOTEBOOK_DPI = 120
 NARROW = 120.0
 """Figures less wide (mm) have nothing beside their axes."""
+
+
+class Panel(Axes):
+    """Axes that a notebook shows: as the figure that they are in."""
+
+    def _repr_png_(self) -> bytes:
+        return _png(self)
+
+
+class Panels(list[Axes]):
+    """Several axes of one figure, which a notebook shows."""
+
+    def _repr_png_(self) -> bytes:
+        return _png(self)
+
+
+def _png(drawn: Drawn) -> bytes:
+    file = BytesIO()
+    with own_style():
+        figure_of(drawn).savefig(file, format="png", dpi=NOTEBOOK_DPI)
+    return file.getvalue()
 
 
 def height(width: Width, *, alone: bool = True) -> float:
@@ -47,7 +70,7 @@ def drawing(
     title: str = "",
     columns: int = 1,
     **settings: Any,
-) -> Iterator[list[Axes]]:
+) -> Iterator[Panels]:
     """Axes to draw into: those that are given, else those of a new figure in this project's style.
 
     Args:
@@ -62,7 +85,7 @@ def drawing(
         ValueError: more or fewer are given than there is to draw.
     """
     if given is not None:
-        panels = [given] if isinstance(given, Axes) else list(np.ravel(np.asarray(given, dtype=object)))
+        panels = Panels([given] if isinstance(given, Axes) else np.ravel(np.asarray(given, dtype=object)))
         if len(panels) != len(heights) * columns:
             raise ValueError(f"{len(heights) * columns} axes are drawn into, and {len(panels)} were given")
         yield panels
@@ -71,7 +94,8 @@ def drawing(
         figure = Figure(layout="constrained")
         if width == "page" and title:
             figure.suptitle(title)
-        panels = list(np.ravel(figure.subplots(len(heights), columns, squeeze=False, **settings)))
+        kind = {"axes_class": Panel}
+        panels = Panels(np.ravel(figure.subplots(len(heights), columns, squeeze=False, subplot_kw=kind, **settings)))
         resize(panels, heights, width)
         yield panels
 

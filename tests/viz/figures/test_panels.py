@@ -16,9 +16,11 @@ RUNS = {
 }
 
 
-@pytest.mark.parametrize("width", WIDTHS)
-@pytest.mark.parametrize("run", RUNS)
-@pytest.mark.parametrize("name", FIGURES)
+@pytest.mark.parametrize(
+    ("name", "run", "width"),
+    [(name, "eight robots", width) for name in FIGURES if name != "tracking_error" for width in WIDTHS]
+    + [(name, "three runs", "column") for name in ("paths", "overview", "tracking_error")],
+)
 def test_a_legend_is_in_the_figure_and_outside_all_axes(name, run, width):
     with own_style():
         drawn = FIGURES[name](RUNS[run], width=width)
@@ -39,6 +41,11 @@ def test_every_axis_says_what_it_shows_with_its_symbol_and_unit(name):
     figure = figure_of(FIGURES[name](RUNS["eight robots"]))
     labels = [axes.get_ylabel() for axes in figure.axes] + [figure.axes[-1].get_xlabel()]
     assert all("$" in label and label.endswith(")") for label in labels)
+
+
+def test_a_notebook_shows_the_figure_of_what_a_function_gives():
+    for drawn in (FIGURES["tracking_error"](RUNS["three runs"]), FIGURES["overview"](RUNS["three runs"])):
+        assert drawn._repr_png_().startswith(b"\x89PNG")
 
 
 def test_another_width_is_refused():

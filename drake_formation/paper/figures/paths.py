@@ -19,7 +19,7 @@ SHOWN = 0.8
 
 def transport_paths(formation: str, store: Store) -> Figure:
     """Paths past the obstacles for both materials and three gains, and where obstacles push robots out of shape."""
-    figure = Figure(figsize=(PAGE, 0.55 * PAGE), layout="constrained")
+    figure = Figure(figsize=(PAGE, 0.42 * PAGE), layout="constrained")
     panels = figure.subplots(len(GAINS), len(MATERIALS), sharex=True, sharey=True)
     for column, (material, stiffness) in enumerate(MATERIALS.items()):
         for row, delta in enumerate(GAINS):

@@ -1,9 +1,10 @@
 """Figures of runs, as the paper shows them.
 
 Each function takes one result, or several that are laid over each other, and axes to draw into; it gives the axes. A
-figure is ``axes.figure`` of these, and a notebook shows it where they end a cell. Without axes it makes a figure in this
-project's style, as wide as a journal's column (88 mm) or page (180 mm). Axes of your own are in that style where they
-were made under :func:`drake_formation.viz.style.own_style`, or after ``plt.style.use("drake_formation.viz.paper")``.
+figure is ``axes.figure`` of these, and a notebook shows it where they end a cell. Without axes a function makes a
+figure in this project's style, as wide as a journal's column (88 mm) or page (180 mm). Axes of your own are in that
+style where they were made under :func:`drake_formation.viz.style.own_style`, or after
+``plt.style.use("drake_formation.viz.paper")``.
 
 - ``paths``: in the plane, with obstacles and the formation along the way.
 - ``tracking_error``, ``consensus_error``, ``spring_lengths``, ``control_forces``: over time.

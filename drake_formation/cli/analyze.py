@@ -8,7 +8,7 @@ import typer
 from rich.console import Console
 
 from drake_formation.cli.app import app
-from drake_formation.cli.options import Overrides, Source, path
+from drake_formation.cli.options import Format, FormatName, Overrides, Source, path
 from drake_formation.scenario import load_scenario
 from drake_formation.terminal import WRONG_INPUT, say, stop
 
@@ -21,6 +21,7 @@ def analyze(
         Path | None,
         typer.Option(parser=path, metavar="FOLDER", help="For the certificate and its figures, if wanted."),
     ] = None,
+    file_format: Format = FormatName.PNG,
     period: Annotated[float | None, typer.Option(help="Sampling period of the loss margin (s).")] = None,
     damping_ratio: Annotated[float | None, typer.Option(help="Find the smallest δ with this damping ratio.")] = None,
     decay_rate: Annotated[float | None, typer.Option(help="Find the smallest δ with this decay rate (1/s).")] = None,
@@ -41,7 +42,7 @@ def analyze(
             Console(stderr=True).status("linearizing", spinner="line") as status,
         ):
             certificate = certify(resolved, questions=asked, progress=lambda part: status.update(f"analyzing: {part}"))
-            written = place and write_certificate(place, certificate)
+            written = place and write_certificate(place, certificate, file_format.value)
     except (OutputError, IllPosedError) as error:
         stop(str(error), WRONG_INPUT)
     say(report(certificate))

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from threadpoolctl import threadpool_limits
 
@@ -12,10 +11,7 @@ from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.cli.run_folder import SCENARIO
 from drake_formation.places import PICTURES, Kind, Place, Written, written
 from drake_formation.scenario import to_yaml
-from drake_formation.viz.style import draw_each
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from drake_formation.viz.style import Drawn, draw_each
 
 CERTIFICATE_FILE = "certificate.json"
 CERTIFICATE = Kind(CERTIFICATE_FILE, (SCENARIO, PICTURES, CERTIFICATE_FILE))
@@ -24,12 +20,13 @@ FEW_ROBOTS = 8
 """With more robots, error against channels is drawn only where the fewest channels are asked for."""
 
 
-def write_certificate(place: Place, certificate: Certificate) -> Written:
+def write_certificate(place: Place, certificate: Certificate, file_format: str = "png") -> Written:
     """Write a certificate, its scenario and its figures.
 
     Args:
         place: where.
         certificate: from :func:`drake_formation.analysis.certify`.
+        file_format: of the figures, png, pdf or svg.
 
     Raises:
         OutputError: it cannot be written anywhere.
@@ -42,30 +39,30 @@ def write_certificate(place: Place, certificate: Certificate) -> Written:
         drawn = {name: partial(draw, certificate) for name, draw in FIGURES.items()}
         # Many small matrices: threads of the linear algebra would wait for one another most of the time.
         with threadpool_limits(limits=1, user_api="blas"):
-            return draw_each(drawn, folder / PICTURES)
+            return draw_each(drawn, folder / PICTURES, file_format)
 
     return written(place, write)
 
 
-def _mode_map(certificate: Certificate) -> "Figure":
+def _mode_map(certificate: Certificate) -> Drawn:
     from drake_formation.viz.analysis_modes import mode_map
 
     return mode_map(certificate.modes, certificate.scenario.name)
 
 
-def _root_locus(certificate: Certificate) -> "Figure":
+def _root_locus(certificate: Certificate) -> Drawn:
     from drake_formation.viz.analysis_modes import root_locus
 
     return root_locus(certificate.formation)
 
 
-def _error_against_effort(certificate: Certificate) -> "Figure":
+def _error_against_effort(certificate: Certificate) -> Drawn:
     from drake_formation.viz.analysis_design import pareto_front
 
     return pareto_front(certificate.formation)
 
 
-def _delay_margin(certificate: Certificate) -> "Figure":
+def _delay_margin(certificate: Certificate) -> Drawn:
     from drake_formation.viz.analysis_delay import delay_margin_against_delta
 
     if not certificate.formation.laplacian.any():
@@ -73,7 +70,7 @@ def _delay_margin(certificate: Certificate) -> "Figure":
     return delay_margin_against_delta(certificate.formation)
 
 
-def _error_against_channels(certificate: Certificate) -> "Figure":
+def _error_against_channels(certificate: Certificate) -> Drawn:
     from drake_formation.analysis.topology.cheapest_graph import pareto_front
     from drake_formation.viz.analysis_topology import error_against_channels
 
@@ -82,7 +79,7 @@ def _error_against_channels(certificate: Certificate) -> "Figure":
     return error_against_channels(pareto_front(certificate.formation))
 
 
-FIGURES: dict[str, Callable[[Certificate], "Figure"]] = {
+FIGURES: dict[str, Callable[[Certificate], Drawn]] = {
     "mode_map": _mode_map,
     "root_locus": _root_locus,
     "delay_margin": _delay_margin,

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from drake_formation.cli.app import app
-from drake_formation.cli.options import path
+from drake_formation.cli.options import Format, FormatName, path
 from drake_formation.cli.runs_bar import runs_bar
 from drake_formation.terminal import FAILED_RUN, WRONG_INPUT, say, stop
 
@@ -18,6 +18,7 @@ def compare(
         Path,
         typer.Option(parser=path, metavar="FOLDER", help="For the tables (Markdown, CSV, LaTeX) and figures."),
     ],
+    file_format: Format = FormatName.PNG,
     workers: Annotated[int | None, typer.Option(min=1, help="Number of processes; default: of processors.")] = None,
 ) -> None:
     """Run one scenario under several laws and compare them in a table and figures."""
@@ -33,7 +34,7 @@ def compare(
             with runs_bar(comparison.name) as progress:
                 outcomes = run_comparison(comparison, workers=workers, progress=progress)
             table = rows(comparison, outcomes)
-            written = write_comparison(place, comparison, outcomes, table)
+            written = write_comparison(place, comparison, outcomes, table, file_format.value)
     except OutputError as error:
         stop(str(error), WRONG_INPUT)
     except (SweepStoppedError, WorkerDiedError) as error:

@@ -19,7 +19,11 @@ COMPARISON = Kind(RUNS, (TABLE, "table.md", "table.tex", SCENARIOS, PICTURES, RU
 
 
 def write_comparison(
-    place: Place, comparison: Comparison, outcomes: Sequence[Outcome], table: Sequence[Row]
+    place: Place,
+    comparison: Comparison,
+    outcomes: Sequence[Outcome],
+    table: Sequence[Row],
+    file_format: str = "png",
 ) -> Written:
     """Write tables, each run's figures and its scenario, and pictures.
 
@@ -40,7 +44,7 @@ def write_comparison(
         def draw() -> None:
             from drake_formation.compare.figures import write_comparison_figures
 
-            failed.update(write_comparison_figures(comparison, outcomes, table, folder / PICTURES))
+            failed.update(write_comparison_figures(comparison, outcomes, table, folder / PICTURES, file_format))
 
         return attempt_each({PICTURES: draw}) | failed
 

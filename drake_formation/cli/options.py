@@ -32,4 +32,14 @@ class EngineName(StrEnum):
     EXPONENTIAL = "exponential"
 
 
+class FormatName(StrEnum):
+    """What figures are written as."""
+
+    PNG = "png"
+    PDF = "pdf"
+    SVG = "svg"
+
+
+Format = Annotated[FormatName, typer.Option("--format", help="Of the figures.")]
+
 ENGINES_HELP = "The block diagram itself, or code compiled from it, integrated by steps or exponentially"

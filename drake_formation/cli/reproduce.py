@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from drake_formation.cli.app import app
-from drake_formation.cli.options import path
+from drake_formation.cli.options import FormatName, path
 from drake_formation.cli.runs_bar import runs_bar
 from drake_formation.terminal import FAILED_RUN, WRONG_INPUT, say, stop
 
@@ -24,6 +24,9 @@ def reproduce(
     out: Annotated[
         Path, typer.Option(parser=path, metavar="FOLDER", help="For the report and the runs it is made of.")
     ] = Path("out/paper"),
+    file_format: Annotated[
+        FormatName, typer.Option("--format", help="Of the figures; the report shows PNGs, others are beside them.")
+    ] = FormatName.PNG,
     topologies: Annotated[
         bool,
         typer.Option("--topologies", help="Instead, run every communication graph that the report speaks of."),
@@ -45,7 +48,7 @@ def reproduce(
 
     with runs_bar("study") as progress:
         try:
-            written = run_study(out, only or (), progress)
+            written = run_study(out, only or (), progress, file_format.value)
         except (OutputError, ValueError) as error:
             stop(str(error), WRONG_INPUT)
         except (SimulationError, SweepStoppedError) as error:

@@ -10,7 +10,7 @@ from rich.table import Table
 
 from drake_formation.cli.app import app
 from drake_formation.cli.film import filming
-from drake_formation.cli.options import ENGINES_HELP, EngineName, Overrides, Source, path
+from drake_formation.cli.options import ENGINES_HELP, EngineName, Format, FormatName, Overrides, Source, path
 from drake_formation.cli.simulating import progress_bar, simulate_with_progress
 from drake_formation.scenario import Scenario, load_scenario, warnings
 from drake_formation.terminal import FAILED_RUN, WRONG_INPUT, say, stop
@@ -32,6 +32,7 @@ def run(
     engine: Annotated[
         EngineName, typer.Option(help=f"{ENGINES_HELP}; auto: blocks or compiled, whichever is done first.")
     ] = EngineName.AUTO,
+    file_format: Format = FormatName.PNG,
     film: Annotated[
         Path | None,
         typer.Option("--animate", parser=path, metavar="FILE", help="Write a film too; ends in .mp4 or .gif."),
@@ -63,10 +64,10 @@ def run(
                 result = simulate_with_progress(resolved, engine)
                 figures = metrics(result)
             except SimulationError as error:
-                kept = write_failed_run(place, resolved, error.partial, str(error))
+                kept = write_failed_run(place, resolved, error.partial, str(error), file_format.value)
                 recorded = f"What was recorded until then is in {kept.folder}."
                 stop("\n".join([str(error), *kept.remarks(), recorded]), FAILED_RUN)
-            written = write_run(place, resolved, result, figures)
+            written = write_run(place, resolved, result, figures, file_format.value)
             shoot(result)
             if csv and table:
                 with explained(csv):

@@ -25,7 +25,9 @@ RUN = Kind(RESULT, (METRICS, SCENARIO, PICTURES, *DIAGRAMS, RESULT))
 FAILED_RUN = Kind(FAILURE, (SCENARIO, RESULT, PICTURES, FAILURE))
 
 
-def write_run(place: Place, scenario: Scenario, result: xr.Dataset, figures: Metrics) -> Written:
+def write_run(
+    place: Place, scenario: Scenario, result: xr.Dataset, figures: Metrics, file_format: str = "png"
+) -> Written:
     """Write a complete run: metrics, resolved scenario and result first, then diagram and figures.
 
     Args:
@@ -33,6 +35,7 @@ def write_run(place: Place, scenario: Scenario, result: xr.Dataset, figures: Met
         scenario: as resolved; running it again repeats the run.
         result: what came out.
         figures: its metrics.
+        file_format: of the figures, png, pdf or svg.
 
     Raises:
         OutputError: it cannot be written anywhere.
@@ -43,7 +46,7 @@ def write_run(place: Place, scenario: Scenario, result: xr.Dataset, figures: Met
         (folder / METRICS).write_text(json.dumps(measured, indent=2) + "\n", encoding="utf-8")
         _write_recorded(folder, scenario, result)
         draw = {name: partial(_draw_diagram, scenario, folder / name) for name in DIAGRAMS}
-        return attempt_each(draw) | _draw_figures(folder, result)
+        return attempt_each(draw) | _draw_figures(folder, result, file_format)
 
     return written(place, write)
 
@@ -56,7 +59,9 @@ def write_check(folder: Path, check: Check) -> None:
     partial.replace(folder / METRICS)
 
 
-def write_failed_run(place: Place, scenario: Scenario, partial_result: xr.Dataset, reason: str) -> Written:
+def write_failed_run(
+    place: Place, scenario: Scenario, partial_result: xr.Dataset, reason: str, file_format: str = "png"
+) -> Written:
     """Write what a failed run recorded, beside the place where its result would have gone.
 
     The folder is named after the one wanted: ``line.failed`` for ``line``.
@@ -68,7 +73,7 @@ def write_failed_run(place: Place, scenario: Scenario, partial_result: xr.Datase
     def write(folder: Path) -> dict[str, str]:
         (folder / FAILURE).write_text(reason + "\n", encoding="utf-8")
         _write_recorded(folder, scenario, partial_result)
-        return _draw_figures(folder, partial_result)
+        return _draw_figures(folder, partial_result, file_format)
 
     return written(place, write, lambda: place.take_beside(".failed", FAILED_RUN))
 
@@ -82,14 +87,14 @@ def _write_recorded(folder: Path, scenario: Scenario, result: xr.Dataset) -> Non
         raise OSError(f"{RESULT}: {error}") from error
 
 
-def _draw_figures(folder: Path, result: xr.Dataset) -> dict[str, str]:
+def _draw_figures(folder: Path, result: xr.Dataset, file_format: str) -> dict[str, str]:
     (folder / PICTURES).mkdir()
     failed: dict[str, str] = {}
 
     def draw() -> None:
-        from drake_formation.viz.run_figures import write_figures  # Matplotlib itself may be out of order
+        from drake_formation.viz.figures import write_figures  # Matplotlib itself may be out of order
 
-        failed.update(write_figures(result, folder / PICTURES))
+        failed.update(write_figures(result, folder / PICTURES, file_format))
 
     return attempt_each({PICTURES: draw}) | failed
 

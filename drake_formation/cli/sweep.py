@@ -8,7 +8,7 @@ import typer
 from rich.console import Console
 
 from drake_formation.cli.app import app
-from drake_formation.cli.options import ENGINES_HELP, path
+from drake_formation.cli.options import ENGINES_HELP, Format, FormatName, path
 from drake_formation.terminal import FAILED_RUN, INTERRUPTED, WRONG_INPUT, Stopped, say, stop
 
 
@@ -39,6 +39,7 @@ def sweep(
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Let the workers of this Dask scheduler run the sweep.")
     ] = None,
+    file_format: Format = FormatName.PNG,
     retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Run again what failed before.")] = False,
 ) -> None:
     """Run a scenario over grids, lists and random samples of its fields; goes on where it was stopped."""
@@ -50,7 +51,7 @@ def sweep(
         with progress_bar(loaded.name, Console(stderr=True)) as progress:
             results = run_sweep(
                 loaded, out, engine=engine.value, executor=executor.value, workers=workers, scheduler=scheduler,
-                retry_failed=retry_failed, progress=progress,
+                retry_failed=retry_failed, file_format=file_format.value, progress=progress,
             )  # fmt: skip
     except SweepError as error:
         stop(str(error), WRONG_INPUT)

@@ -3,17 +3,21 @@
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from drake_formation.compare.comparison import Comparison, Run
 from drake_formation.measuring.metric import Value
+from drake_formation.vectors import length
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    import xarray as xr
 
 KEPT = 400
-"""Samples of a run that figures are drawn of, at the most."""
+"""Spans of a run of which figures keep one sample each, that with the largest consensus error."""
+SHOWN = ("position", "consensus_error", "phase", "obstacle_position", "obstacle_radius", "obstacle_outline")
+"""What figures show of a run."""
 
 
 @dataclass(frozen=True)
@@ -26,10 +30,7 @@ class Outcome:
         failure: why it failed; empty where it did not.
         channels: channels over which a robot hears another, and whose state some law reads.
         messages: messages a second over all of them; infinity where they are heard all the time.
-        times: sample times (s), shape (samples,).
-        position: of the robots (m), shape (samples, N, 2).
-        consensus_error: largest of any robot (m), shape (samples,).
-        carried: whether the object was carried, shape (samples,).
+        result: what figures show of it.
     """
 
     run: Run
@@ -37,10 +38,7 @@ class Outcome:
     failure: str
     channels: int
     messages: float
-    times: Array
-    position: Array
-    consensus_error: Array
-    carried: NDArray[np.bool_]
+    result: "xr.Dataset"
 
 
 def run_comparison(
@@ -75,7 +73,6 @@ def run_one(run: Run) -> Outcome:
     """Run one scenario of a comparison, by the engine that is the fastest for it."""
     from drake_formation.measuring import metrics
     from drake_formation.simulation import SimulationError, simulate
-    from drake_formation.vectors import length_of
 
     failure, figures = "", dict[str, Value]()
     try:
@@ -87,14 +84,7 @@ def run_one(run: Run) -> Outcome:
     except ValueError as error:  # a run too short to be measured
         failure = str(error)
     channels, messages = traffic(run)
-    chosen = _thinned(len(result["time"]))
-    return Outcome(
-        run, figures, failure, channels, messages,
-        result["time"].values[chosen],
-        result["position"].values[chosen],
-        length_of(result["consensus_error"].values[chosen]).max(axis=1),
-        result["phase"].values[chosen] == 1,
-    )  # fmt: skip
+    return Outcome(run, figures, failure, channels, messages, shown(result))
 
 
 def traffic(run: Run) -> tuple[int, float]:
@@ -119,5 +109,10 @@ def _rate(period: float | None) -> float:
     return 1.0 / period if period else np.inf
 
 
-def _thinned(samples: int) -> NDArray[np.intp]:
-    return np.unique(np.linspace(0, max(samples - 1, 0), min(samples, KEPT)).astype(np.intp))
+def shown(result: "xr.Dataset") -> "xr.Dataset":
+    """What figures show of a run, at the first and the last of its samples and some between."""
+    error = length(result["consensus_error"]).max("robot").values
+    spans = np.array_split(np.arange(len(error)), min(len(error), KEPT))
+    peaks = [int(span[np.argmax(error[span])]) for span in spans]
+    chosen = sorted({0, *peaks, len(error) - 1})
+    return result[[name for name in SHOWN if name in result]].isel(time=chosen).load()

@@ -35,12 +35,13 @@ h2 { margin-top: 2.5rem; font-size: 1.2rem; }
 """
 
 
-def write_report(folder: Path, sections: Iterable[Section]) -> dict[str, str]:
+def write_report(folder: Path, sections: Iterable[Section], file_format: str = "png") -> dict[str, str]:
     """Write ``report.md`` with its ``figures/``, ``report.html`` and ``tables.csv``.
 
     Args:
         folder: a folder that exists.
         sections: in order.
+        file_format: in which pictures are written too, if another.
 
     Returns:
         Pictures that could not be drawn, by name, and why; the report says so in their places.
@@ -50,9 +51,9 @@ def write_report(folder: Path, sections: Iterable[Section]) -> dict[str, str]:
     parts, cells = [], []
     failed: dict[str, str] = {}
     for section in sections:
-        failed |= attempt_each(
-            {name: partial(draw, figures / f"{name}.png") for name, draw in section.pictures.items()}
-        )
+        for suffix in sorted({"png", file_format}):
+            files = {name: figures / f"{name}.{suffix}" for name in section.pictures}
+            failed |= attempt_each({name: partial(draw, files[name]) for name, draw in section.pictures.items()})
         images = [_image(section, name, failed.get(name)) for name in section.pictures]
         parts.append("\n\n".join(filter(None, [f"## {section.title}", section.text, *images])))
         cells.extend(section.cells)

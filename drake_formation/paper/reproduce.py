@@ -14,13 +14,16 @@ Progress = Callable[[int, int], None]
 """Called with how many of the missing runs are done, and how many there are."""
 
 
-def reproduce(folder: Path, only: Sequence[str] = (), progress: Progress | None = None) -> Written:
+def reproduce(
+    folder: Path, only: Sequence[str] = (), progress: Progress | None = None, file_format: str = "png"
+) -> Written:
     """Make every run that is missing in a folder, and write the report of the named parts there.
 
     Args:
         folder: for the report and, in ``runs``, the results; made if missing.
         only: names of parts; all if empty.
         progress: called before the first run and after each.
+        file_format: of figures beside the PNGs that the report shows, if another.
 
     Returns:
         Where the report is, and the pictures it is without.
@@ -38,7 +41,7 @@ def reproduce(folder: Path, only: Sequence[str] = (), progress: Progress | None 
     with reserved(folder, REPORT) as place:
         _run(store, parts, progress)
         sections = [part.make(store) for part in parts]
-        return written(place, lambda partial: write_report(partial, sections))
+        return written(place, lambda partial: write_report(partial, sections, file_format))
 
 
 def _run(store: Store, parts: Sequence[Part], progress: Progress | None) -> None:

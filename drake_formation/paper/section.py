@@ -13,7 +13,7 @@ from drake_formation.scenario import Scenario
 from drake_formation.viz.style import draw
 
 Picture = Callable[[Path], None]
-"""Draws itself to a PNG file."""
+"""Draws itself to a file, as its suffix says."""
 Runs = Callable[[], list[Scenario]]
 
 
@@ -86,4 +86,4 @@ def figure(
 
 
 def _save(make: Callable[[], Figure], path: Path) -> None:
-    draw(make, path, dpi=110)
+    draw(make, path)

@@ -9,6 +9,7 @@ from drake_formation.measuring import Metrics
 from drake_formation.paper.runs import transport
 from drake_formation.paper.store import Store
 from drake_formation.scenario import Scenario, resolve, with_overrides
+from drake_formation.viz.figures.panels import INCH, WIDTHS
 
 DELTAS = (0.0, 1e4)
 
@@ -52,7 +53,7 @@ def sensitivity_runs() -> list[Scenario]:
 
 def sensitivity(store: Store) -> Figure:
     """ε, e and |u| over each inferred parameter, the others as in the study."""
-    figure = Figure(figsize=(12, 7), layout="constrained")
+    figure = Figure(figsize=(WIDTHS["page"] / INCH, 105 / INCH), layout="constrained")
     panels = figure.subplots(len(MEASURES), len(PARAMETERS), sharex="col", sharey="row")
     for column, (parameter, values) in enumerate(PARAMETERS.items()):
         for delta in DELTAS:
@@ -62,7 +63,6 @@ def sensitivity(store: Store) -> Figure:
                 panels[row, column].plot(values, series, "o-", markersize=4, label=f"δ = {delta:g}")
         for axes in panels[:, column]:
             axes.axvline(values[len(values) // 2], color="0.7", linewidth=0.8, zorder=0)
-            axes.grid(alpha=0.3)
         panels[-1, column].set_xlabel(parameter)
     for axes, label in zip(panels[:, 0], MEASURES, strict=True):
         axes.set_ylabel(label)

@@ -5,7 +5,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from drake_formation.markdown import markdown_table
-from drake_formation.paper.figures.curves import phase, since_hand_off
+from drake_formation.paper.figures.curves import PAGE, phase, since_hand_off
 from drake_formation.paper.figures.paths import draw_transport
 from drake_formation.paper.runs import transport
 from drake_formation.paper.store import Store
@@ -54,13 +54,12 @@ def s_curve() -> Scenario:
 def s_curve_figure(store: Store) -> Figure:
     """Paths along the s-curve, and the distances between the robots (Fig. 19)."""
     carried = phase(store[s_curve()], 1)
-    figure = Figure(figsize=(10, 7), layout="constrained")
+    figure = Figure(figsize=(PAGE, 0.7 * PAGE), layout="constrained")
     plane, springs = figure.subplots(2, height_ratios=[2, 1])
     draw_transport(plane, carried)
     draw_obstacles(plane, carried, snapshot_times(carried))
-    plane.set(xlabel="x (m)", ylabel="y (m)")
+    plane.set(xlabel="$x$ (m)", ylabel="$y$ (m)")
     elongation = 100 * abs(carried["spring_length"] - carried["rest_length"]).max("spring")
     springs.plot(since_hand_off(carried), elongation)
-    springs.set(xlabel="time since hand-off (s)", ylabel="largest |d − r| (cm)")
-    springs.grid(alpha=0.3)
+    springs.set(xlabel="time since hand-off $t$ (s)", ylabel=r"largest $|d_{ij} - r_{ij}|$ (cm)")
     return figure

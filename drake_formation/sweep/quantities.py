@@ -10,7 +10,11 @@ from drake_formation.measuring.registry import known
 from drake_formation.scenario import Scenario
 from drake_formation.scenario.written import PartOf
 
-_UNIT = re.compile(r"\((1|deg|kg|kg m²|m|m/s|N|N/m|N s/m|N m²|s|1/s|Hz|rad|rad/s|V|A|W|J)\)")
+_UNITS = (
+    "1", "deg", "kg", "kg m²", "m", "m/s", "m/s²", "N", "N/m", "N s/m", "N m²", "N/s", "s", "1/s", "1/s²", "Hz", "rad",
+    "rad/s", "V", "A", "W", "J", "dB", "dBm", "bit", "bit/s",
+)  # fmt: skip
+_UNIT = re.compile(rf"\(({'|'.join(map(re.escape, _UNITS))})\)")
 
 
 def metric_attributes(name: str) -> dict[str, str]:

@@ -56,6 +56,7 @@ def run_sweep(
     scheduler: str | None = None,
     retry_failed: bool = False,
     figures: bool = True,
+    file_format: str = "png",
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Run a sweep, or what is missing of it.
@@ -75,6 +76,7 @@ def run_sweep(
         scheduler: address of a Dask scheduler, whose workers then run the sweep.
         retry_failed: run again what failed before.
         figures: whether to draw figures, where one or two axes are swept.
+        file_format: of the figures, png, pdf or svg.
         progress: called as runs finish.
 
     Returns:
@@ -125,7 +127,7 @@ def run_sweep(
 
             labels = channel_labels(sweep)
             with _explained(folder / FIGURES):
-                failures = write_sweep_figures(dataset, folder / FIGURES, labels)
+                failures = write_sweep_figures(dataset, folder / FIGURES, labels, file_format)
             if failures:
                 dataset.attrs[MISSING] = "\n".join(f"No figure {name}: {reason}" for name, reason in failures.items())
     return dataset

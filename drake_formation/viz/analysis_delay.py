@@ -8,13 +8,13 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from drake_formation.analysis.linear.linearization import LinearFormation
 from drake_formation.analysis.network.delay_margin import Delayed, shortest_delay
+from drake_formation.viz.figures.panels import Width, drawing, height, legend
 
 Array = NDArray[np.float64]
 
@@ -41,8 +41,13 @@ LABELS: dict[Delayed, str] = {"neighbour": "neighbours' states late", "relative"
 
 
 def delay_margin_against_delta(
-    formation: LinearFormation, *, deltas: Sequence[float] | None = None, velocity_gains: Sequence[float] | None = None
-) -> Figure:
+    formation: LinearFormation,
+    axes: Axes | None = None,
+    *,
+    deltas: Sequence[float] | None = None,
+    velocity_gains: Sequence[float] | None = None,
+    width: Width = "page",
+) -> Axes:
     """The delay margin against δ, for delayed neighbours and for the whole difference delayed, at several δ_v.
 
     Where a line is missing every delay is tolerated; where it jumps, another mode has become the critical one. Rings
@@ -50,8 +55,10 @@ def delay_margin_against_delta(
 
     Args:
         formation: the linearized closed loop.
+        axes: where to draw; a figure of their own if not given.
         deltas: consensus gains δ (N/m), positive and ascending; if not given, as many as each curve needs.
         velocity_gains: velocity consensus gains δ_v (N s/m).
+        width: of that figure.
 
     Raises:
         IllPosedError: there is one robot, or the loop is unstable without delay.
@@ -59,26 +66,24 @@ def delay_margin_against_delta(
     if velocity_gains is None:
         usual = VELOCITY_GAINS if formation.robots < MANY else VELOCITY_GAINS_OF_MANY
         velocity_gains = sorted({*usual, formation.delta_v})
-    figure = Figure(figsize=(9, 5), layout="constrained")
-    axes = figure.subplots()
     colours = [to_hex(colormaps["viridis"](shade)) for shade in np.linspace(0, 0.85, len(velocity_gains))]
     largest = max(LARGEST_DELTA, 2 * formation.delta)
+    title = f"{formation.scenario.name}: delay margin"
     # Many small matrices: threads of the linear algebra would wait for one another most of the time.
-    with threadpool_limits(limits=1, user_api="blas"):
+    with drawing(axes, [height(width)], width, title=title) as (panel,), threadpool_limits(limits=1, user_api="blas"):
         for delta_v, colour in zip(velocity_gains, colours, strict=True):
             for of in get_args(Delayed):
                 if deltas is None:
                     drawn, delays = curve(formation, of, delta_v, SMALLEST_DELTA, largest)
                 else:
                     drawn, delays = np.array(deltas), margins(formation, of, deltas, delta_v)
-                axes.plot(drawn, delays, STYLES[of], color=colour, linewidth=1.5)
-        _mark_own(axes, formation)
-    axes.set(xscale="log", yscale="log", xlabel="consensus gain δ (N/m)", ylabel="delay margin τ* (ms)")
-    axes.set_title(f"{formation.scenario.name}: delay margin")
-    axes.set_xlim(*((SMALLEST_DELTA, largest) if deltas is None else (deltas[0], deltas[-1])))
-    axes.grid(alpha=0.3)
-    _legend(axes, velocity_gains, colours)
-    return figure
+                panel.plot(drawn, delays, STYLES[of], color=colour)
+        _mark_own(panel, formation)
+        panel.set(xscale="log", yscale="log", xlabel=r"consensus gain $\delta$ (N/m)")
+        panel.set_ylabel(r"delay margin $\tau^*$ (ms)")
+        panel.set_xlim(*((SMALLEST_DELTA, largest) if deltas is None else (deltas[0], deltas[-1])))
+        _legend(panel, velocity_gains, colours)
+    return panel
 
 
 def curve(formation: LinearFormation, of: Delayed, delta_v: float, low: float, high: float) -> tuple[Array, Array]:
@@ -125,17 +130,9 @@ def _mark_own(axes: Axes, formation: LinearFormation) -> None:
 def _legend(axes: Axes, velocity_gains: Sequence[float], colours: Sequence[str]) -> None:
     entries = [Line2D([], [], color="0.3", linestyle=STYLES[of], label=LABELS[of]) for of in get_args(Delayed)]
     for delta_v, colour in zip(velocity_gains, colours, strict=True):
-        entries.append(Line2D([], [], color=colour, linewidth=4, label=f"δ_v = {delta_v:g} N s/m"))
+        entries.append(Line2D([], [], color=colour, linewidth=4, label=rf"$\delta_v$ = {delta_v:g} N s/m"))
     if len(axes.lines) > 2 * len(velocity_gains):
         entries.append(
             Line2D([], [], color="black", marker="o", fillstyle="none", linestyle="", label="the scenario's gains")
         )
-    axes.legend(
-        handles=entries,
-        title="a missing line: any delay is tolerated",
-        title_fontsize="small",
-        fontsize="small",
-        frameon=False,
-        loc="upper left",
-        bbox_to_anchor=(1.0, 1.0),
-    )
+    legend(axes, entries, heading="a missing line: any delay is tolerated")

@@ -6,18 +6,19 @@ from collections.abc import Iterable
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from drake_formation.analysis.linear.linearization import LinearFormation
 from drake_formation.analysis.linear.motion_subspaces import PARTS
 from drake_formation.analysis.stability.modes import Mode, Modes, decay_limit
+from drake_formation.viz.figures.looks import COLOURS
+from drake_formation.viz.figures.panels import Width, drawing, height, legend
 
 STYLES = {
-    "centre": ("o", "tab:blue"),
-    "rotation": ("D", "tab:orange"),
-    "stretch": ("^", "tab:green"),
-    "consensus": ("s", "tab:purple"),
+    "centre": ("o", COLOURS[0]),
+    "rotation": ("D", COLOURS[1]),
+    "stretch": ("^", COLOURS[2]),
+    "consensus": ("s", COLOURS[6]),
 }
 """Marker and colour of every kind of mode."""
 
@@ -34,63 +35,69 @@ VALUES = 90
 """Values of δ in a root locus."""
 
 
-def mode_map(modes: Modes, title: str) -> Figure:
+def mode_map(modes: Modes, title: str, axes: Axes | None = None, *, width: Width = "page") -> Axes:
     """Every mode in the complex plane by kind, with its Laplacian eigenvalue; conjugates are left out.
 
     Args:
         modes: from :func:`drake_formation.analysis.stability.modes`.
         title: name of the scenario.
+        axes: where to draw; a figure of their own if not given.
+        width: of that figure.
     """
-    figure, axes = _plane([mode.eigenvalue for mode in modes.modes], f"{title}: modes")
-    for kind in PARTS:
-        _draw_kind(axes, kind, [mode for mode in modes.modes if mode.kind == kind])
-    _label(axes, modes.modes)
-    axes.plot([], [], "o", color="0.4", fillstyle="none", label="open: consensus cannot move it")
-    _legend(figure, axes)
-    return figure
+    with drawing(axes, [1.2 * height(width)], width, title=f"{title}: modes") as (panel,):
+        _draw_plane(panel, [mode.eigenvalue for mode in modes.modes])
+        for kind in PARTS:
+            _draw_kind(panel, kind, [mode for mode in modes.modes if mode.kind == kind])
+        _label(panel, modes.modes)
+        panel.plot([], [], "o", color="0.4", fillstyle="none", label="open: consensus cannot move it")
+        legend(panel, above=True)
+    return panel
 
 
-def root_locus(formation: LinearFormation) -> Figure:
-    """Where all eigenvalues go as δ grows from 0, at the scenario's δ_v; rings mark the scenario's own δ."""
+def root_locus(formation: LinearFormation, axes: Axes | None = None, *, width: Width = "page") -> Axes:
+    """Where all eigenvalues go as δ grows from 0, at the scenario's δ_v; rings mark the scenario's own δ.
+
+    Args:
+        formation: the linearized closed loop.
+        axes: where to draw; a figure of their own if not given.
+        width: of that figure.
+    """
     largest = max(LARGEST_DELTA, 2 * formation.delta)
     deltas = np.concatenate([[0.0], np.geomspace(1e-5 * largest, largest, VALUES)])
     loci = np.array([np.linalg.eigvals(formation.closed_loop(delta, formation.delta_v)) for delta in deltas])
-    figure, axes = _plane(loci.ravel(), f"{formation.scenario.name}: root locus, δ_v = {formation.delta_v:g} N s/m")
     upper = loci.imag >= -1e-9
     shown = np.broadcast_to(np.maximum(deltas, deltas[1])[:, None], loci.shape)[upper]
-    dots = axes.scatter(
-        loci.real[upper], loci.imag[upper], c=shown, s=9, cmap="viridis", norm=LogNorm(deltas[1], largest), zorder=3
-    )
-    figure.colorbar(dots, ax=axes, label="δ (N/m)")
     own = np.linalg.eigvals(formation.A)
     own = own[own.imag >= -1e-9]
-    label = f"the scenario's δ = {formation.delta:g} N/m"
-    axes.plot(own.real, own.imag, "o", color="black", fillstyle="none", markersize=9, label=label, zorder=4)
-    limit = decay_limit(formation)
-    if limit is not None:
-        text = f"mean decay rate of what consensus moves, for every δ: {limit:.4g} 1/s"
-        axes.axvline(-limit, color="tab:red", linestyle="--", linewidth=1, label=text)
-    _legend(figure, axes)
-    return figure
+    title = rf"{formation.scenario.name}: root locus, $\delta_v$ = {formation.delta_v:g} N s/m"
+    with drawing(axes, [1.2 * height(width)], width, title=title) as (panel,):
+        _draw_plane(panel, loci.ravel())
+        scale = LogNorm(deltas[1], largest)
+        dots = panel.scatter(loci.real[upper], loci.imag[upper], c=shown, s=7, cmap="viridis", norm=scale, zorder=3)
+        panel.figure.colorbar(dots, ax=panel, label=r"consensus gain $\delta$ (N/m)")
+        label = rf"the scenario's $\delta$ = {formation.delta:g} N/m"
+        panel.plot(own.real, own.imag, "o", color="black", fillstyle="none", markersize=8, label=label, zorder=4)
+        limit = decay_limit(formation)
+        if limit is not None:
+            text = rf"mean decay rate of what consensus moves, for every $\delta$: {limit:.4g} 1/s"
+            panel.axvline(-limit, color=COLOURS[1], linestyle="--", linewidth=1, label=text)
+        legend(panel, above=True)
+    return panel
 
 
-def _plane(values: Iterable[complex], title: str) -> tuple[Figure, Axes]:
+def _draw_plane(axes: Axes, values: Iterable[complex]) -> None:
     """The upper half of the complex plane about some eigenvalues; frequencies on a scale that reaches 0."""
     points = np.array(list(values))
-    figure = Figure(figsize=(8.5, 5.5), layout="constrained")
-    axes = figure.subplots()
     fastest = float(np.abs(points.imag).max())
     left, right = float(points.real.min()), float(points.real.max())
     reach = max(abs(left), abs(right))
     axes.set_xlim(min(left, 0.0) - 0.35 * reach, max(right, 0.0) + 0.2 * reach)
     axes.set_yscale("symlog", linthresh=_smallest_frequency(points), linscale=0.5)
     axes.set_ylim(-0.3 * _smallest_frequency(points), 3 * max(fastest, _smallest_frequency(points)))
-    axes.axvspan(0, axes.get_xlim()[1], color="tab:red", alpha=0.08, linewidth=0, label="unstable")
+    axes.axvspan(0, axes.get_xlim()[1], color=COLOURS[1], alpha=0.1, linewidth=0, label="unstable")
     axes.axvline(0, color="0.3", linewidth=0.8)
     _draw_damping(axes)
-    axes.set(xlabel="Re s (1/s): minus the decay rate", ylabel="Im s (rad/s): frequency", title=title)
-    axes.grid(alpha=0.3)
-    return figure, axes
+    axes.set(xlabel=r"minus the decay rate $\mathrm{Re}\,s$ (1/s)", ylabel=r"frequency $\mathrm{Im}\,s$ (rad/s)")
 
 
 def _smallest_frequency(points: NDArray[np.complex128]) -> float:
@@ -122,7 +129,7 @@ def _draw_kind(axes: Axes, kind: str, modes: list[Mode]) -> None:
             marker,
             color=colour,
             fillstyle="full" if moved else "none",
-            markersize=8,
+            markersize=6,
             alpha=0.8,
             label=kind if modes and k == (0 if modes[0].moved_by_consensus else 1) else None,
             zorder=3 if moved else 4,  # open markers are not hidden by others at the same place
@@ -150,8 +157,3 @@ def _label(axes: Axes, modes: tuple[Mode, ...]) -> None:
             rotation_mode="anchor",
             zorder=5,
         )
-
-
-def _legend(figure: Figure, axes: Axes) -> None:
-    handles, labels = axes.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize="small", frameon=False)

@@ -1,44 +1,48 @@
 """What every channel buys: consensus error against communication channels, and the spectra that explain it."""
 
 from collections import Counter
+from collections.abc import Sequence
 
 import numpy as np
-from matplotlib import colormaps
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from drake_formation.analysis.topology.results import GraphPoint, ParetoFront
+from drake_formation.viz.figures.looks import COLOURS
+from drake_formation.viz.figures.panels import Width, drawing, height, legend
 
 MOST_DRAWN = 12
 """Points up to which every graph is drawn."""
 
-BEST_COLOUR = colormaps["tab10"](0)
-SPECTRUM_COLOUR = colormaps["tab10"](1)
+BEST_COLOUR = COLOURS[0]
+SPECTRUM_COLOUR = COLOURS[1]
 OTHER_COLOUR = "0.7"
 
 
-def error_against_channels(front: ParetoFront) -> Figure:
+def error_against_channels(
+    front: ParetoFront, axes: Sequence[Axes] | None = None, *, width: Width = "page"
+) -> list[Axes]:
     """Consensus error of the best graph for every number of channels, with its Laplacian eigenvalues.
 
     Args:
         front: from :func:`drake_formation.analysis.topology.cheapest_graph.pareto_front`.
+        axes: where to draw, two or, where the graphs are drawn too, three; a figure of their own if not given.
+        width: of that figure.
     """
-    figure = Figure(figsize=(8, 7), layout="constrained")
     few = len(front.points) <= MOST_DRAWN
-    rows = figure.subplots(3 if few else 2, sharex=True, height_ratios=[3, 2, 1] if few else [3, 2])
-    _draw_errors(rows[0], front)
-    _draw_spectra(rows[1], front)
-    if few:
-        _draw_graphs(rows[2], front)
-    rows[0].set_title(front.measure)
-    rows[-1].set_xlabel("communication channels (two an edge)")
-    if few:
-        rows[-1].set_xticks([point.channels for point in front.points])
-    else:
-        rows[-1].xaxis.set_major_locator(MaxNLocator(steps=[2, 4, 10]))  # channels come in pairs
-    rows[-1].set_xlim(front.points[0].channels - 1.2, front.points[-1].channels + 1.2)
-    return figure
+    row = height(width, alone=False)
+    heights = [1.5 * row, row, 0.6 * row] if few else [1.5 * row, row]
+    with drawing(axes, heights, width, title=front.measure, sharex=True) as panels:
+        _draw_errors(panels[0], front)
+        _draw_spectra(panels[1], front)
+        if few:
+            _draw_graphs(panels[2], front)
+            panels[-1].set_xticks([point.channels for point in front.points])
+        else:
+            panels[-1].xaxis.set_major_locator(MaxNLocator(steps=[2, 4, 10]))  # channels come in pairs
+        panels[-1].set_xlabel("communication channels (two an edge)")
+        panels[-1].set_xlim(front.points[0].channels - 1.2, front.points[-1].channels + 1.2)
+    return panels
 
 
 def _draw_errors(axes: Axes, front: ParetoFront) -> None:
@@ -62,9 +66,8 @@ def _draw_errors(axes: Axes, front: ParetoFront) -> None:
     if not front.exact and np.all(bounds > 0):
         axes.plot(channels, bounds, "--", color="0.3", linewidth=1, label="no graph is better", zorder=2)
     axes.set_ylim(0, min(1.05 * axes.dataLim.y1, 2.2 * max(steps)))
-    axes.set_ylabel("consensus error (mm)")
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize="small", frameon=False)
+    axes.set_ylabel("consensus error\n$\\|e_i\\|$ (mm)")
+    legend(axes)
 
 
 def _draw_spectra(axes: Axes, front: ParetoFront) -> None:
@@ -80,13 +83,12 @@ def _draw_spectra(axes: Axes, front: ParetoFront) -> None:
         )
     channels = [point.channels for point in front.points]
     connectivity = [point.spectrum[1] for point in front.points]
-    axes.plot(channels, connectivity, color=SPECTRUM_COLOUR, linewidth=0.8, label="algebraic connectivity λ₂")
+    axes.plot(channels, connectivity, color=SPECTRUM_COLOUR, linewidth=0.8, label=r"algebraic connectivity $\lambda_2$")
     neighbours = [_fewest_neighbours(point) for point in front.points]
     axes.plot(channels, neighbours, "_", color="0.2", markersize=14, label="fewest neighbours of a robot")
-    axes.set_ylabel("Laplacian eigenvalues")
-    axes.set_ylim(0, 1.4 * max(point.spectrum[-1] for point in front.points))  # the legend goes above them
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize="small", frameon=False, loc="upper left", ncols=2)
+    axes.set_ylabel(r"Laplacian eigenvalues $\lambda$ (1)")
+    axes.set_ylim(0, 1.1 * max(point.spectrum[-1] for point in front.points))
+    legend(axes)
 
 
 def _draw_graphs(axes: Axes, front: ParetoFront) -> None:

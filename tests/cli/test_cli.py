@@ -51,6 +51,21 @@ def test_run_writes_everything_and_says_where(cli):
         assert result["control_force"].attrs["units"] == "N"
 
 
+@pytest.mark.parametrize(("suffix", "magic"), [("pdf", b"%PDF"), ("svg", b"<?xml")])
+def test_figures_are_written_in_the_format_asked_for(cli, suffix, magic):
+    assert cli("run", "line", *SHORT, "--format", suffix, "--out", "o")[0] == 0
+    files = list(Path("o/figures").iterdir())
+    assert len(files) == 6
+    assert all(file.suffix == f".{suffix}" and file.read_bytes().startswith(magic) for file in files)
+
+
+def test_a_format_of_no_figure_is_refused_before_anything_runs(cli):
+    status, _, err = cli("run", "line", *SHORT, "--format", "gif", "--out", "o")
+    assert status == 2
+    assert "'gif'" in err
+    assert not Path("o").exists()
+
+
 def test_run_of_the_resolved_scenario_repeats_the_run(cli):
     cli("run", "line", *SHORT, "--set", "springs.stiffness=30", "--out", "first")
     assert cli("run", "first/scenario.yaml", "--out", "second")[0] == 0

@@ -57,8 +57,8 @@ def test_a_figure_marks_what_happened_where_and_when(result):
     happened = [Event("break", 2.5, (3.0, 1.0), (1, 2), "it breaks"), Event("break", 2.75, (3.5, 1.0), (1, 2), "again")]
     variables, coordinates = labelled_events(happened)
     broken = result.drop_dims("event").assign(variables).assign_coords(coordinates)
-    (axes,) = figures.paths(broken).axes
+    axes = figures.paths(broken)
     (marks,) = [line for line in axes.lines if line.get_label() == "break, 2.5, 2.75 s"]
     assert marks.get_xydata().tolist() == [[3.0, 1.0], [3.5, 1.0]]
-    (over_time,) = figures.consensus_error(broken).axes
+    over_time = figures.consensus_error(broken)
     assert {2.5, 2.75} <= {line.get_xdata()[0] for line in over_time.lines if len(line.get_xdata()) == 2}

@@ -25,6 +25,7 @@ def test_a_metrics_unit_is_the_end_of_its_name(name, units):
         ("springs.stiffness.3", "N/m"),
         ("consensus.delta_v", "N s/m"),
         ("avoidance.gain", "N m²"),
+        ("consensus.medium.bit_rate", "bit/s"),
         ("avoidance.obstacles.0.position.1", "m"),
         ("robots.mass", "kg"),
         ("robots.start.random.spread", "m"),

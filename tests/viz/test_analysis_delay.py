@@ -19,7 +19,7 @@ def formation():
 
 @pytest.fixture(scope="module")
 def axes(formation):
-    return delay_margin_against_delta(formation, deltas=DELTAS, velocity_gains=[0.0, 50.0]).axes[0]
+    return delay_margin_against_delta(formation, deltas=DELTAS, velocity_gains=[0.0, 50.0])
 
 
 def test_lines_are_the_margins(formation, axes):
@@ -50,7 +50,7 @@ def test_axes_are_logarithmic_and_have_units(axes):
 
 
 def test_by_default_the_papers_gains_and_the_scenarios_are_drawn(formation):
-    axes = delay_margin_against_delta(formation).axes[0]
+    axes = delay_margin_against_delta(formation)
     assert axes.get_xlim()[1] >= 2e4
     assert len(axes.lines) == 2 * 4 + 2
 

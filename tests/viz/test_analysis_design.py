@@ -17,7 +17,7 @@ def formation():
 
 @pytest.fixture(scope="module")
 def lines(formation):
-    (axes,) = pareto_front(formation).axes
+    axes = pareto_front(formation)
     assert "(N² s)" in axes.get_xlabel()
     assert "(m² s)" in axes.get_ylabel()
     assert {axes.get_xscale(), axes.get_yscale()} == {"log"}

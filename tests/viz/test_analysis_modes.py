@@ -29,7 +29,7 @@ def points(axes):
 
 def test_the_map_shows_every_mode_and_no_other(formation):
     found = modes(formation)
-    (axes,) = mode_map(found, "x").axes
+    axes = mode_map(found, "x")
     drawn = points(axes)
     expected = np.array([[mode.eigenvalue.real, mode.frequency] for mode in found.modes])
     order = [np.lexsort(part.T) for part in (drawn, expected)]
@@ -37,17 +37,17 @@ def test_the_map_shows_every_mode_and_no_other(formation):
     (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
     assert np.all((expected[:, 0] > left) & (expected[:, 0] < right))
     assert np.all((expected[:, 1] > bottom) & (expected[:, 1] < top))
-    assert axes.get_xlabel().startswith("Re s (1/s)")
+    assert axes.get_xlabel().endswith("(1/s)")
 
 
 def test_open_markers_are_what_consensus_cannot_move(formation):
-    (axes,) = mode_map(modes(formation), "x").axes
+    axes = mode_map(modes(formation), "x")
     open_points = sum(len(line.get_xdata()) for line in axes.lines if line.get_fillstyle() == "none")
     assert open_points == sum(not mode.moved_by_consensus for mode in modes(formation).modes)
 
 
 def test_the_locus_begins_without_consensus_and_passes_the_scenarios_gain(formation):
-    axes = root_locus(formation).axes[0]
+    axes = root_locus(formation)
     (dots,) = axes.collections[-1:]
     drawn = dots.get_offsets() @ [1, 1j]
     for delta in (0.0, 2e4):

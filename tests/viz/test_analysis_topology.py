@@ -8,6 +8,7 @@ from drake_formation.analysis import linearize
 from drake_formation.analysis.topology.cheapest_graph import ForceNoise, pareto_front
 from drake_formation.analysis.topology.results import GraphPoint, ParetoFront
 from drake_formation.viz.analysis_topology import MOST_DRAWN, error_against_channels
+from drake_formation.viz.style import figure_of
 
 
 @pytest.fixture(scope="module")
@@ -30,14 +31,14 @@ def labelled(axes):
 
 
 def test_best_graphs_and_all_others_are_shown_in_millimetres(front):
-    axes = error_against_channels(front).axes[0]
+    axes = error_against_channels(front)[0]
     best = labelled(axes)["best of all graphs"].get_xydata()
     np.testing.assert_allclose(best, [(point.channels, 1000 * point.error_m) for point in front.points])
     assert len(labelled(axes)["other graphs tried"].get_xydata()) == len(front.tried) == 6
 
 
 def test_spectra_of_all_points_are_shown(front):
-    axes = error_against_channels(front).axes[1]
+    axes = error_against_channels(front)[1]
     shown = {tuple(np.round(place, 6)) for dots in axes.collections for place in dots.get_offsets()}
     assert shown == {(point.channels, round(value, 6)) for point in front.points for value in point.spectrum[1:]}
     neighbours = labelled(axes)["fewest neighbours of a robot"].get_ydata()
@@ -45,20 +46,20 @@ def test_spectra_of_all_points_are_shown(front):
 
 
 def test_few_graphs_are_drawn_and_many_are_not(front):
-    figure = error_against_channels(front)
-    assert len(figure.axes) == 3
-    drawings = figure.axes[2].child_axes
+    panels = error_against_channels(front)
+    assert len(panels) == 3
+    drawings = panels[2].child_axes
     assert [len(drawing.lines) for drawing in drawings] == [len(point.edges) + 1 for point in front.points]
-    assert len(error_against_channels(searched(MOST_DRAWN + 1)).axes) == 2
+    assert len(error_against_channels(searched(MOST_DRAWN + 1))) == 2
 
 
 def test_bounds_are_shown_where_not_all_were_tried(front):
-    assert "no graph is better" not in labelled(error_against_channels(front).axes[0])
+    assert "no graph is better" not in labelled(error_against_channels(front)[0])
     made = searched(5)
-    bounds = labelled(error_against_channels(made).axes[0])["no graph is better"].get_ydata()
+    bounds = labelled(error_against_channels(made)[0])["no graph is better"].get_ydata()
     np.testing.assert_allclose(bounds, [1000 * point.bound_m for point in made.points])
 
 
 def test_a_figure_can_be_written(front, tmp_path):
-    error_against_channels(front).savefig(tmp_path / "front.png")
+    figure_of(error_against_channels(front)).savefig(tmp_path / "front.png")
     assert (tmp_path / "front.png").stat().st_size > 10_000

@@ -11,6 +11,7 @@ from sweep.quick import quick_sweep
 
 from drake_formation.sweep import load_sweep
 from drake_formation.sweep.coordinates import coordinates, dimensions
+from drake_formation.viz.style import figure_of
 from drake_formation.viz.sweep_figures import metric_figure, sweep_metrics, write_sweep_figures
 
 STIFFNESS = {"path": "springs.stiffness", "logspace": [1.0, 1e4, 5]}
@@ -41,9 +42,9 @@ def dataset(*axes, values=None):
 
 
 def axes_of(results, name="peak_force_n"):
-    figure = metric_figure(results, name)
-    figure.canvas.draw()
-    return figure.axes[0]
+    panels = metric_figure(results, name)
+    figure_of(panels).canvas.draw()
+    return panels[0]
 
 
 def test_one_axis_of_numbers_is_a_line_through_its_values():
@@ -52,8 +53,8 @@ def test_one_axis_of_numbers_is_a_line_through_its_values():
     np.testing.assert_allclose(axes.lines[0].get_xdata(), results["stiffness"])
     np.testing.assert_allclose(axes.lines[0].get_ydata(), results["peak_force_n"])
     assert axes.get_xscale() == "log"
-    assert axes.get_xlabel() == "stiffness k_ij (N/m)"
-    assert axes.get_ylabel() == "peak control force (N)"
+    assert axes.get_xlabel() == "stiffness $k_{ij}$ (N/m)"
+    assert axes.get_ylabel() == r"peak control force $\|u_i\|$ (N)"
 
 
 def test_a_metric_of_every_robot_is_drawn_by_its_largest():
@@ -65,6 +66,16 @@ def test_decades_from_zero_are_logarithmic_beyond_the_first():
     axes = axes_of(dataset(DELTA))
     assert axes.get_xscale() == "symlog"
     assert axes.xaxis.get_transform().linthresh == 100
+
+
+def test_a_bit_rate_has_its_unit():
+    rate = {"path": "consensus.medium.bit_rate", "logspace": [1e4, 1e6, 3]}
+    medium = {
+        "consensus.channel": {"kind": "packets", "period": 0.1, "delay": 0.0},
+        "consensus.medium": {"kind": "tdma"},
+    }
+    coordinate, *_ = coordinates(load_sweep(quick_sweep(rate, scenario="quadrilateral", set=medium)).axes)
+    assert coordinate.attributes["units"] == "bit/s"
 
 
 def test_values_over_decades_are_on_a_logarithmic_scale():
@@ -108,18 +119,17 @@ def test_names_beside_numbers_are_a_line_each(order):
 
 def test_cases_are_drawn_over_the_first_field_that_moves():
     axes = axes_of(dataset(CASES))
-    assert axes.get_xlabel() == "stiffness k_ij (N/m)"
+    assert axes.get_xlabel() == "stiffness $k_{ij}$ (N/m)"
     np.testing.assert_allclose(axes.lines[0].get_xdata(), [1.0, 2.0, 5.0])
     np.testing.assert_allclose(axes.lines[0].get_ydata(), [1.0, 3.0, 2.0])
 
 
 def test_samples_are_a_histogram_and_points_over_what_was_drawn():
     results = dataset(SAMPLES)
-    figure = metric_figure(results, "peak_force_n")
-    histogram, points = figure.axes
+    histogram, points = metric_figure(results, "peak_force_n")
     assert sum(bar.get_height() for bar in histogram.patches) == 50
     np.testing.assert_allclose(np.sort(points.lines[0].get_xdata()), np.sort(results["mass"]))
-    assert points.get_xlabel() == "mass m_i (kg)"
+    assert points.get_xlabel() == "mass $m_{i}$ (kg)"
 
 
 def test_samples_along_an_axis_are_their_median_and_nine_tenths():
@@ -137,8 +147,8 @@ def test_every_metric_has_a_file_and_old_ones_go(tmp_path):
     assert names == ["peak_force_n.png", "tracking_error_m.png"]
     results = dataset(STIFFNESS, DELTA)
     results["peak_force_n"][:] = np.nan
-    write_sweep_figures(results, tmp_path / "figures")
-    assert [path.name for path in (tmp_path / "figures").iterdir()] == ["tracking_error_m.png"]
+    write_sweep_figures(results, tmp_path / "figures", file_format="svg")
+    assert [path.name for path in (tmp_path / "figures").iterdir()] == ["tracking_error_m.svg"]
 
 
 def test_three_axes_and_unknown_metrics_are_not_drawn():
@@ -152,7 +162,7 @@ def test_one_value_and_failed_runs_can_be_drawn(axes):
     results["peak_force_n"][:] = np.nan
     results["peak_force_n"][(0,) * len(axes)] = 7.0
     results["status"][-1] = 2
-    figure = metric_figure(results, "peak_force_n")
+    figure = figure_of(metric_figure(results, "peak_force_n"))
     figure.canvas.draw()
     assert "runs failed" in figure.get_suptitle()
 
@@ -171,13 +181,13 @@ def test_whatever_came_out_can_be_drawn(axes, values):
     shape = results["peak_force_n"].shape
     results["peak_force_n"][:] = np.resize(values, shape)
     for name in sweep_metrics(results):
-        metric_figure(results, name).canvas.draw()
+        figure_of(metric_figure(results, name)).canvas.draw()
 
 
 def test_the_boundaries_of_the_certificate_are_between_the_points_that_differ():
     labels = np.full((5, 4), "stable", dtype=object)
     labels[:, 2], labels[:, 3] = "not certified", "unstable"
-    axes = metric_figure(dataset(STIFFNESS, DELTA), "peak_force_n", labels.astype(str)).axes[0]
+    axes = metric_figure(dataset(STIFFNESS, DELTA), "peak_force_n", labels.astype(str))[0]
     lines = [collection for collection in axes.collections if isinstance(collection, QuadContourSet)]
     places = [line.get_paths()[0].vertices[:, 0] for line in lines]
     np.testing.assert_allclose(places[0], (1e2 + 1e3) / 2)

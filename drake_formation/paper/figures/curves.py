@@ -1,59 +1,57 @@
 """Figures 4-18 and 23 of the paper, redrawn from our runs; transports as probably simulated."""
 
-import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from drake_formation.paper.readings.two_readings import PROBABLE, READINGS
 from drake_formation.paper.runs import AGGREGATION_GAINS, GAINS, MATERIALS, TOPOLOGIES, aggregation
 from drake_formation.paper.store import Store
 from drake_formation.vectors import length
-from drake_formation.viz.figures import robot_colours
-
-Array = NDArray[np.float64]
+from drake_formation.viz.figures import robot_looks
+from drake_formation.viz.figures.envelope import draw_band, windows
+from drake_formation.viz.figures.looks import COLOURS as PALETTE
+from drake_formation.viz.figures.panels import INCH, WIDTHS, legend
 
 STYLES = dict(zip(GAINS, ("-", "--", ":"), strict=True))
-COLOURS = {"rubber": "tab:blue", "steel": "tab:red"}
-PIXELS = 400
-"""Columns that a band is resolved to, no more than an axes has pixels across."""
-FARTHEST = "largest ‖e_i‖"
-"""What the consensus error is in tables and figures: that of the robot farthest off."""
+COLOURS = {"rubber": PALETTE[0], "steel": PALETTE[1]}
+PAGE = WIDTHS["page"] / INCH
+"""Width of the figures (inches)."""
+FARTHEST = r"largest $\|e_i\|$"
+"""What the consensus error is in figures: that of the robot farthest off."""
 
 
 def aggregation_paths(formation: str, store: Store) -> Figure:
     """Paths of the robots to their slots at δ = 0 (Figs. 4 and 12)."""
     gathering = phase(store[aggregation(formation, 0.0)], 0)
-    figure = Figure(figsize=(5, 4.5), layout="constrained")
+    figure = Figure(figsize=(0.6 * PAGE, 0.5 * PAGE), layout="constrained")
     axes = figure.subplots()
-    for robot, colour in robot_colours(gathering).items():
+    for robot, its in robot_looks(gathering).items():
         x, y = gathering["position"].sel(robot=robot).values.T
-        axes.plot(x, y, color=colour, label=f"robot {robot}")
-        axes.plot(x[:1], y[:1], "s", color=colour)
-        axes.plot(x[-1:], y[-1:], "o", color=colour)
-    axes.set(xlabel="x (m)", ylabel="y (m)", aspect="equal")
+        axes.plot(x, y, color=its.colour, linestyle=its.dashes, label=f"robot {robot}")
+        axes.plot(x[:1], y[:1], its.marker, color=its.colour, fillstyle="none")
+        axes.plot(x[-1:], y[-1:], its.marker, color=its.colour)
+    axes.set(xlabel="$x$ (m)", ylabel="$y$ (m)", aspect="equal")
     _finish(axes)
     return figure
 
 
 def aggregation_positions(formation: str, store: Store) -> Figure:
     """Positions in time for three consensus gains (Figs. 5 and 13)."""
-    figure = Figure(figsize=(9, 5.5), layout="constrained")
+    figure = Figure(figsize=(PAGE, 0.6 * PAGE), layout="constrained")
     panels = figure.subplots(2, len(AGGREGATION_GAINS), sharex=True, sharey="row")
     for column, delta in enumerate(AGGREGATION_GAINS):
         gathering = phase(store[aggregation(formation, delta)], 0)
         for row, axis in enumerate(("x", "y")):
             axes = panels[row, column]
-            for robot, colour in robot_colours(gathering).items():
+            for robot, its in robot_looks(gathering).items():
                 position = gathering["position"].sel(robot=robot, axis=axis)
-                axes.plot(gathering["time"], position, color=colour, label=f"robot {robot}")
-            axes.grid(alpha=0.3)
-        panels[0, column].set_title(f"δ = {delta:g} N/m", fontsize="medium")
-        panels[1, column].set_xlabel("time (s)")
-    panels[0, 0].set_ylabel("x (m)")
-    panels[1, 0].set_ylabel("y (m)")
-    panels[0, -1].legend(fontsize="small", frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+                axes.plot(gathering["time"], position, color=its.colour, linestyle=its.dashes, label=f"robot {robot}")
+        panels[0, column].set_title(f"δ = {delta:g} N/m")
+        panels[1, column].set_xlabel("time $t$ (s)")
+    panels[0, 0].set_ylabel("$x$ (m)")
+    panels[1, 0].set_ylabel("$y$ (m)")
+    legend(panels[0, -1])
     return figure
 
 
@@ -69,27 +67,25 @@ def aggregation_errors(formation: str, store: Store) -> Figure:
 
 def velocities(formation: str, store: Store) -> Figure:
     """Velocities of the robots at δ = 0 for both materials (Figs. 8 and 16)."""
-    figure = Figure(figsize=(9, 5), layout="constrained")
+    figure = Figure(figsize=(PAGE, 0.55 * PAGE), layout="constrained")
     panels = figure.subplots(2, len(MATERIALS), sharex=True, sharey="row")
     for column, material in enumerate(MATERIALS):
         carried = phase(store[PROBABLE.transport(formation, material, 0.0)], 1)
         for row, axis in enumerate(("x", "y")):
             axes = panels[row, column]
-            for robot, colour in robot_colours(carried).items():
-                style = "-" if robot % 2 else "--"
+            for robot, its in robot_looks(carried).items():
                 velocity = carried["velocity"].sel(robot=robot, axis=axis)
-                draw_band(axes, since_hand_off(carried), velocity, colour, style, f"robot {robot}")
-            axes.set_ylabel(f"v_{axis} (m/s)" if column == 0 else "")
-            axes.grid(alpha=0.3)
-        panels[0, column].set_title(f"{material}, δ = 0", fontsize="medium")
-        panels[1, column].set_xlabel("time since hand-off (s)")
-    panels[0, -1].legend(fontsize="small", frameon=False)
+                draw_band(axes, since_hand_off(carried), velocity, its.colour, its.dashes, f"robot {robot}")
+            axes.set_ylabel(f"$v_{axis}$ (m/s)" if column == 0 else "")
+        panels[0, column].set_title(f"{material}, δ = 0")
+        panels[1, column].set_xlabel("time since hand-off $t$ (s)")
+    legend(panels[0, -1])
     return figure
 
 
 def tracking_errors(formation: str, store: Store) -> Figure:
     """Tracking error at each gain: the robot farthest off, and each robot at δ = 0 (Figs. 9 and 17)."""
-    figure = Figure(figsize=(9, 6.5), layout="constrained")
+    figure = Figure(figsize=(PAGE, 0.7 * PAGE), layout="constrained")
     single, gains = figure.subplots(2, sharex=True)
     for material, colour in COLOURS.items():
         for delta in GAINS:
@@ -101,18 +97,18 @@ def tracking_errors(formation: str, store: Store) -> Figure:
                 style = "-" if robot % 2 else "--"
                 each = error.sel(robot=robot)
                 single.plot(since_hand_off(carried), each, style, color=colour, label=f"{material}, robot {robot}")
-    single.set_title("δ = 0, each robot", fontsize="medium")
-    gains.set_title("largest of all robots", fontsize="medium")
-    gains.set_xlabel("time since hand-off (s)")
+    single.set_title("δ = 0, each robot")
+    gains.set_title("largest of all robots")
+    gains.set_xlabel("time since hand-off $t$ (s)")
     for axes in (single, gains):
-        axes.set_ylabel("‖ε_i‖ (cm)")
+        axes.set_ylabel(r"$\|\varepsilon_i\|$ (cm)")
         _finish(axes)
     return figure
 
 
 def relative_distance(store: Store) -> Figure:
     """Distance d12 at δ = 0 for both materials (Fig. 10)."""
-    figure, axes = _panel("d12 (m)", "time since hand-off (s)")
+    figure, axes = _panel("$d_{12}$ (m)", "time since hand-off $t$ (s)")
     for material, colour in COLOURS.items():
         carried = phase(store[PROBABLE.transport("line", material, 0.0)], 1)
         distance = carried["spring_length"].sel(spring="1-2")
@@ -123,7 +119,7 @@ def relative_distance(store: Store) -> Figure:
 
 def consensus_errors(formation: str, store: Store) -> Figure:
     """Consensus error of the robot farthest off for both materials and three gains (Figs. 11 and 18)."""
-    figure, axes = _panel(f"{FARTHEST} (cm), within each half second", "time since hand-off (s)")
+    figure, axes = _panel(f"{FARTHEST} (cm), within each half second", "time since hand-off $t$ (s)")
     for material, colour in COLOURS.items():
         for delta in GAINS:
             carried = phase(store[PROBABLE.transport(formation, material, delta)], 1)
@@ -137,15 +133,15 @@ def consensus_errors(formation: str, store: Store) -> Figure:
 
 def topology_bars(store: Store) -> Figure:
     """Largest consensus error by communication topology and without communication, by both readings (Fig. 23)."""
-    figure = Figure(figsize=(12, 4), layout="constrained")
+    figure = Figure(figsize=(PAGE, 0.4 * PAGE), layout="constrained")
     for axes, reading in zip(figure.subplots(1, len(READINGS), sharey=True), READINGS.values(), strict=True):
         local = reading.transport("quadrilateral", "rubber", 0.0)
         runs = {"local LQR": local} | {name: reading.topology(name) for name in TOPOLOGIES}
         errors = [100 * store.measured(run).consensus_error_m for run in runs.values()]
-        drawn = axes.bar(list(runs), errors, color=["0.6"] + ["tab:blue"] * len(TOPOLOGIES))
+        drawn = axes.bar(list(runs), errors, color=["0.6"] + [PALETTE[0]] * len(TOPOLOGIES))
         axes.bar_label(drawn, fmt="%.2f")
         axes.margins(y=0.1)
-        axes.set_title(reading.title, fontsize="medium")
+        axes.set_title(reading.title)
         axes.tick_params("x", labelrotation=25)
     figure.axes[0].set_ylabel(f"{FARTHEST} (cm)")
     return figure
@@ -166,31 +162,12 @@ def farthest(result: xr.Dataset) -> xr.DataArray:
     return length(result["consensus_error"]).max("robot")
 
 
-def windows(time: Array, series: Array, width: float) -> tuple[Array, Array, Array]:
-    """The least and the largest value within each window of a width (s), after the windows' middles."""
-    window = (time / width).astype(int)
-    starts = np.flatnonzero(np.diff(window, prepend=-1))
-    middles = (window[starts] + 0.5) * width
-    return middles, np.minimum.reduceat(series, starts), np.maximum.reduceat(series, starts)
-
-
-def draw_band(
-    axes: Axes, time: xr.DataArray, series: xr.DataArray, colour: str | tuple[float, ...], style: str, label: str
-) -> None:
-    """A signal as a line where it is slow, and as the band that it fills where it is faster than a pixel."""
-    width = float(time[-1]) / PIXELS
-    middles, lowest, highest = windows(time.values, series.values, width)
-    axes.plot(middles, 0.5 * (lowest + highest), color=colour, linestyle=style, label=label)
-    axes.fill_between(middles, lowest, highest, color=colour, alpha=0.3, linewidth=0)
-
-
-def _panel(label: str, time: str = "time (s)") -> tuple[Figure, Axes]:
-    figure = Figure(figsize=(8, 4), layout="constrained")
+def _panel(label: str, time: str = "time $t$ (s)") -> tuple[Figure, Axes]:
+    figure = Figure(figsize=(PAGE, 0.45 * PAGE), layout="constrained")
     axes = figure.subplots()
     axes.set(xlabel=time, ylabel=label)
     return figure, axes
 
 
 def _finish(axes: Axes) -> None:
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize="small", frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    legend(axes)

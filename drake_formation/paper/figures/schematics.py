@@ -9,37 +9,42 @@ from numpy.typing import NDArray
 from drake_formation.formation import graphs
 from drake_formation.paper.runs import FORMATIONS, TOPOLOGIES, topology
 from drake_formation.scenario import load_scenario, resolve
+from drake_formation.viz.figures.looks import COLOURS
+from drake_formation.viz.figures.panels import INCH, WIDTHS
 
 Array = NDArray[np.float64]
+
+PAGE = WIDTHS["page"] / INCH
+"""Width of the figures (inches)."""
 
 
 def mass_spring_model() -> Figure:
     """The quadrilateral as masses and springs (Fig. 1)."""
     scenario = load_scenario("quadrilateral")
-    figure = Figure(figsize=(4, 4), layout="constrained")
+    figure = Figure(figsize=(0.5 * PAGE, 0.5 * PAGE), layout="constrained")
     draw_graph(figure.subplots(), resolve(scenario).slots, resolve(scenario).springs.graph, springs=True)
     return figure
 
 
 def formations() -> Figure:
     """The three formations with every physical interaction (Fig. 20)."""
-    figure = Figure(figsize=(9, 3.2), layout="constrained")
+    figure = Figure(figsize=(PAGE, 0.36 * PAGE), layout="constrained")
     for axes, name in zip(figure.subplots(1, len(FORMATIONS)), FORMATIONS, strict=True):
         scenario = load_scenario(name)
         graph = resolve(scenario).springs.graph
         draw_graph(axes, resolve(scenario).slots, graph, springs=True)
-        axes.set_title(f"{name}: {graph.number_of_edges()} spring(s)", fontsize="medium")
+        axes.set_title(f"{name}: {graph.number_of_edges()} spring(s)")
     return figure
 
 
 def topologies() -> Figure:
     """The communication topologies (Fig. 22)."""
-    figure = Figure(figsize=(12, 2.8), layout="constrained")
+    figure = Figure(figsize=(PAGE, 0.26 * PAGE), layout="constrained")
     for axes, name in zip(figure.subplots(1, len(TOPOLOGIES)), TOPOLOGIES, strict=True):
         scenario = topology(name)
         graph = resolve(scenario).channels.graph
         draw_graph(axes, resolve(scenario).slots, graph)
-        axes.set_title(f"{name}\nλ₂ = {graphs.algebraic_connectivity(graph):.3g}", fontsize="medium")
+        axes.set_title(f"{name}\nλ₂ = {graphs.algebraic_connectivity(graph):.3g}", fontsize="small")
     return figure
 
 
@@ -47,9 +52,9 @@ def draw_graph(axes: Axes, slots: Array, graph: nx.Graph, springs: bool = False)
     """Robots in their slots and the edges between them, as springs or as lines."""
     for i, j in graphs.edges(graph):
         x, y = (spring_shape if springs else np.array)(slots[[i, j]]).T
-        axes.plot(x, y, color="tab:orange" if springs else "tab:blue", linewidth=1, zorder=1)
+        axes.plot(x, y, color=COLOURS[1] if springs else COLOURS[0], linewidth=1, zorder=1)
     for robot, (x, y) in enumerate(slots, start=1):
-        axes.plot([x], [y], "o", markersize=15, color="white", markeredgecolor="black", zorder=2)
+        axes.plot([x], [y], "o", markersize=11, color="white", markeredgecolor="black", zorder=2)
         axes.text(x, y, str(robot), ha="center", va="center", fontsize="small", zorder=3)
     axes.set(aspect="equal", xticks=[], yticks=[])
     middle, reach = slots.mean(axis=0), 0.7 * float(np.ptp(slots, axis=0).max())

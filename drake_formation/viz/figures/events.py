@@ -9,7 +9,8 @@ from drake_formation.simulation.events import HAND_OFF, Event, events
 
 MARKERS = ("*", "P", "D", "v", "^", "h", "<", ">")
 """One for each kind, in order of what happened first."""
-COLOUR = "crimson"
+COLOUR = "black"
+"""No robot has it."""
 MOST_TIMES = 3
 """A legend tells as many times of one kind; of more it counts them."""
 
@@ -22,7 +23,7 @@ def draw_events(axes: Axes, result: xr.Dataset) -> None:
     for (kind, its), marker in zip(_by_kind(result).items(), cycle(MARKERS), strict=False):
         x, y = zip(*(event.place for event in its), strict=True)
         label = f"{kind.replace('_', ' ')}, {_when(its)}"
-        (marks,) = axes.plot(x, y, marker, color=COLOUR, markersize=8, label=label, zorder=5)
+        (marks,) = axes.plot(x, y, marker, color=COLOUR, markersize=6, label=label, zorder=5)
         marks.set(markeredgecolor="white", markeredgewidth=0.7)
 
 

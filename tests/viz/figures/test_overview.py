@@ -5,7 +5,7 @@ import pytest
 
 from drake_formation import load_scenario, simulate
 from drake_formation.viz.ages import ages
-from drake_formation.viz.overview import overview
+from drake_formation.viz.figures import overview
 
 QUICK = {"aggregation.duration": 1.0, "transport.duration": 3.0, "consensus.delta": 20.0, "consensus.delta_v": 20.0}
 
@@ -26,6 +26,7 @@ def test_an_outage_is_seen_as_age(result):
 
 
 def test_channels_have_a_row_each_where_they_carry_packets(result):
-    assert [len(axes.get_yticks()) for axes in overview(result).axes[2:3]] == [12]
+    assert [len(axes.get_yticks()) for axes in overview(result)[2:3]] == [12]
     plain = simulate(load_scenario("quadrilateral", overrides=QUICK), engine="compiled")
-    assert len(overview(plain).axes) == 2
+    assert len(overview(plain)) == 2
+    assert len(overview([plain, result])) == 3

@@ -48,23 +48,24 @@ return {x: place.x, y: -place.z, shown: object.visible,
 
 
 @contextmanager
-def opened(address):
-    """A page with a recording, in a browser of its own; one that has hung, as on a busy machine, is tried once more."""
+def opened(address, *, offline=False):
+    """A page with a recording, in a browser of its own; one that has hung, as on a busy machine, is tried once more.
+
+    Offline, everything that is not a file fails to load, which the console tells.
+    """
     from selenium.common.exceptions import TimeoutException
 
-    driver = chromium()
-    driver.set_page_load_timeout(60)
-    driver.set_script_timeout(60)
+    view = View(chromium())
     try:
-        driver.get(address)
+        view.go(address, offline=offline)
     except TimeoutException:
-        driver.quit()
-        driver = chromium()
-        driver.get(address)
+        view.driver.quit()
+        view = View(chromium())
+        view.go(address, offline=offline)
     try:
-        yield View(driver)
+        yield view
     finally:
-        driver.quit()
+        view.driver.quit()
 
 
 class View:
@@ -72,6 +73,15 @@ class View:
 
     def __init__(self, driver):
         self.driver = driver
+        driver.set_page_load_timeout(60)
+        driver.set_script_timeout(60)
+        driver.execute_cdp_cmd("Network.enable", {})
+
+    def go(self, address, *, offline=False):
+        """Go to a page."""
+        unlimited = {"latency": 0, "downloadThroughput": -1, "uploadThroughput": -1}
+        self.driver.execute_cdp_cmd("Network.emulateNetworkConditions", {"offline": offline, **unlimited})
+        self.driver.get(address)
 
     def scrub(self, time):
         """Go to a time of the recording (s)."""

@@ -10,23 +10,24 @@ from drake_formation.viz.errors import FilmError
 from drake_formation.viz.packets import packets_of
 from drake_formation.viz.playback import Playback
 
+SECONDS = 0.1
 SHORT = {"aggregation.duration": 2.0, "transport.duration": 3.0}
 
 
 @pytest.fixture(scope="module")
 def result():
-    return simulate(load_scenario("line", overrides=SHORT))
+    return simulate(load_scenario("line", overrides=SHORT), engine="blocks")
 
 
 @pytest.fixture(scope="module")
 def film(result):
-    return animate(result, seconds=0.3)
+    return animate(result, seconds=SECONDS)
 
 
 def test_pictures_run_from_the_first_sample_to_the_last(film, result):
     assert film.times[0] == result.time[0]
     assert film.times[-1] == result.time[-1]
-    assert len(film.times) == round(0.3 * animation.RATE) + 1
+    assert len(film.times) == round(SECONDS * animation.RATE) + 1
 
 
 def test_a_picture_has_the_robots_where_they_are_then(film, result):

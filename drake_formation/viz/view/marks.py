@@ -21,7 +21,7 @@ RATE = 64
 """How often it is looked at what has changed (1/s)."""
 
 ALARM: Colour = (0.80, 0.0, 0.10, 1.0)
-HAND: Colour = (0.95, 0.77, 0.06, 1.0)
+HAND: Colour = (0.85, 0.62, 0.0, 1.0)
 PIN = 0.9
 """Height of a pin (m)."""
 

@@ -11,13 +11,17 @@ REQUIRED = "DRAKE_FORMATION_BROWSER"
 """Where this is in the environment, tests that find no browser fail instead of being skipped."""
 
 FLAGS = (
-    "--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1200,700",
-    "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+    "--headless=new", "--no-sandbox", "--disable-dev-shm-usage",
+    "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-extensions",
+    "--disable-background-networking", "--disable-component-update", "--no-first-run",
 )  # fmt: skip
-"""Without a window, in any container, and with WebGL in software."""
+"""Without a window, in any container, with WebGL in software, and nothing of its own beside the page."""
+
+SIZE = (800, 500)
+"""Of the window (pixels); software draws a larger one more slowly."""
 
 
-def chromium():
+def chromium(size):
     """Debian's Chromium and its driver, started."""
     from selenium import webdriver
     from selenium.webdriver.chrome.service import Service
@@ -27,7 +31,7 @@ def chromium():
         (pytest.fail if os.environ.get(REQUIRED) else pytest.skip)("there is no chromium with chromedriver")
     options = webdriver.ChromeOptions()
     options.binary_location = programs[0]
-    for flag in FLAGS:
+    for flag in (*FLAGS, f"--window-size={size[0]},{size[1]}"):
         options.add_argument(flag)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     return webdriver.Chrome(options=options, service=Service(programs[1]))
@@ -48,23 +52,24 @@ return {x: place.x, y: -place.z, shown: object.visible,
 
 
 @contextmanager
-def opened(address):
-    """A page with a recording, in a browser of its own; one that has hung, as on a busy machine, is tried once more."""
+def opened(address, *, offline=False, size=SIZE):
+    """A page with a recording, in a browser of its own; one that has hung, as on a busy machine, is tried once more.
+
+    Offline, everything that is not a file fails to load, which the console tells.
+    """
     from selenium.common.exceptions import TimeoutException
 
-    driver = chromium()
-    driver.set_page_load_timeout(60)
-    driver.set_script_timeout(60)
+    view = View(chromium(size))
     try:
-        driver.get(address)
+        view.go(address, offline=offline)
     except TimeoutException:
-        driver.quit()
-        driver = chromium()
-        driver.get(address)
+        view.driver.quit()
+        view = View(chromium(size))
+        view.go(address, offline=offline)
     try:
-        yield View(driver)
+        yield view
     finally:
-        driver.quit()
+        view.driver.quit()
 
 
 class View:
@@ -72,6 +77,15 @@ class View:
 
     def __init__(self, driver):
         self.driver = driver
+        driver.set_page_load_timeout(60)
+        driver.set_script_timeout(60)
+        driver.execute_cdp_cmd("Network.enable", {})
+
+    def go(self, address, *, offline=False):
+        """Go to a page."""
+        unlimited = {"latency": 0, "downloadThroughput": -1, "uploadThroughput": -1}
+        self.driver.execute_cdp_cmd("Network.emulateNetworkConditions", {"offline": offline, **unlimited})
+        self.driver.get(address)
 
     def scrub(self, time):
         """Go to a time of the recording (s)."""

@@ -20,7 +20,7 @@ SCENE = {
     "aggregation": "{duration: 10.0}",
     "transport": "{goal: [9.0, 3.2], duration: 20.0}",
 }
-TIME, COLOURS = 11.5, 128
+TIME, COLOURS, SIZE = 11.5, 128, (1200, 700)
 
 
 def main() -> None:
@@ -28,7 +28,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         page = Path(folder) / "view.html"
         write_page(result, page, follow=True)
-        with opened(page_address(page)) as view:
+        with opened(page_address(page), size=SIZE) as view:
             view.scrub(TIME)
             picture = Image.fromarray(view.picture().astype("uint8"))
     picture.quantize(COLOURS).save(sys.argv[1], optimize=True)

@@ -26,12 +26,15 @@ NOTEBOOK_MEGABYTES = 50
 """What a film in a notebook may take where there is no ffmpeg."""
 
 
-def animate(result: "xr.Dataset", *, seconds: float = 10.0) -> "Animation":
-    """A film of a result: robots, springs in the colour of their strain, obstacles and where the robots have been.
+def animate(result: "xr.Dataset", *, seconds: float = 10.0, follow: bool = False) -> "Animation":
+    """A film of a result: robots and where they have been, springs in the colour of their strain, obstacles, channels.
+
+    Each picture has the packets that are under way at its moment, and what has broken or failed until then.
 
     Args:
         result: from :func:`drake_formation.simulate`, or read from ``result.nc``.
         seconds: how long the film is, however long the run was.
+        follow: keep the formation in the middle of the picture; otherwise all of the way is seen.
 
     Returns:
         A film that a notebook shows by itself, and that :meth:`Animation.save` writes to a file.
@@ -39,7 +42,7 @@ def animate(result: "xr.Dataset", *, seconds: float = 10.0) -> "Animation":
     Raises:
         ValueError, ScenarioError: it is not a result of this version, or the film would have no length.
     """
-    return Animation(result, seconds)
+    return Animation(result, seconds, follow=follow)
 
 
 class Animation:
@@ -50,13 +53,13 @@ class Animation:
         figure: in which each is drawn, in its turn.
     """
 
-    def __init__(self, result: "xr.Dataset", seconds: float) -> None:
+    def __init__(self, result: "xr.Dataset", seconds: float, *, follow: bool = False) -> None:
         if not seconds > 0:
             raise ValueError(f"a film of {seconds:g} s has no length")
         playback = Playback(result)
         self.times = np.linspace(playback.begin, playback.end, max(round(seconds * RATE), 1) + 1)
         with own_style():
-            self._picture = FilmPicture(result, playback, self.times)
+            self._picture = FilmPicture(result, playback, self.times, follow=follow)
         self.figure = self._picture.figure
 
     def save(self, path: str | Path) -> None:

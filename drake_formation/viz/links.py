@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.formation.formation import Formation
+from drake_formation.viz.packets import heard
 from drake_formation.viz.playback import Playback
 
 Array = NDArray[np.float64]
@@ -88,7 +89,7 @@ def alive(playback: Playback, links: Sequence[Link], times: Array) -> NDArray[np
     """Whether each link is anything but a channel that fell silent, shape (m, links)."""
     if all(link.mortal is None for link in links):
         return np.ones((len(times), len(links)), dtype=bool)
-    return _of_those(playback.alive(times), [link.mortal for link in links])
+    return _of_those(heard(playback, times), [link.mortal for link in links])
 
 
 def _of_those(told: NDArray[np.bool_], which: Sequence[int | None]) -> NDArray[np.bool_]:

@@ -1,17 +1,19 @@
 """A result between its samples: where everything is at any time."""
 
 from collections.abc import Iterator
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from drake_formation.formation.formation import Formation
+from drake_formation.parts.roles import TRAFFIC
 from drake_formation.scenario import resolve
 from drake_formation.simulation.acting import acting, may_let_go
+from drake_formation.simulation.events import Event, events
 from drake_formation.simulation.motion import Motion
 from drake_formation.simulation.result import series_of
-from drake_formation.viz.ages import ages
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -20,9 +22,6 @@ Array = NDArray[np.float64]
 
 LATTICE = "lattice"
 """The kind of object that is a grid of nodes."""
-
-OLD = 1.0
-"""A channel over which nothing younger is known is taken for dead (s)."""
 
 LOST = 20.0
 """Robots are shown as far off as this many times the size of the task; those of a run that diverged go beyond."""
@@ -106,18 +105,35 @@ class Playback:
             return carried
         return carried & acting(self.formation, self._series.get("broken_at"), times)
 
-    def alive(self, times: Array) -> NDArray[np.bool_]:
-        """Whether each channel tells its robot something that is heeded and not old, shape (m, channels)."""
-        formation = self.formation
-        alive = np.ones((len(times), len(formation.channels.pairs)), dtype=bool)
-        if "traffic" in self._result:
-            told = [formation.channels.labels.index(str(label)) for label in self._result["channel"].values]
-            alive[:, told] = ages(self._result, times).T <= OLD
-        stage = np.searchsorted([stage.time for stage in formation.stages], times, "right") - 1
-        for k, (i, j) in enumerate(formation.channels.pairs.tolist()):
-            if (heard := formation.signals.get(f"heard_{i + 1}_{j + 1}")) is not None:
-                alive[:, k] &= heard[stage, 0] == 1
-        return alive
+    def gripped(self, times: Array) -> NDArray[np.bool_]:
+        """Whether each robot's grip holds an object that is a body of its own, shape (m, N)."""
+        held = acting(self.formation, self._series.get("grip_broken_at"), times)
+        return self.carried(times)[:, None] & held
+
+    def failed(self, times: Array) -> NDArray[np.bool_]:
+        """Whether each robot is out of order: it does not actuate, or has dropped its load; shape (m, N)."""
+        stages = self.formation.stages
+        if not stages:
+            return np.zeros((len(times), self.formation.robots), dtype=bool)
+        sound = np.array([(stage.drive == 1) & (stage.held == 1) for stage in stages])
+        return ~sound[self.stage(times)]
+
+    def stage(self, times: Array) -> NDArray[np.intp]:
+        """Which of the formation's stages it is, from 0; −1 where it has none."""
+        return np.searchsorted([stage.time for stage in self.formation.stages], times, "right") - 1
+
+    @cached_property
+    def events(self) -> tuple[Event, ...]:
+        """What happened while it is shown, in order of time."""
+        return tuple(event for event in events(self._result) if self.begin <= event.time <= self.end)
+
+    @property
+    def traffic(self) -> tuple[Array, Array, list[int]]:
+        """What is recorded of packets: sample times (s), numbers of shape (samples, some, 6), and which channels."""
+        if "traffic" not in self._series:
+            return self._times, np.zeros((len(self._times), 0, len(TRAFFIC))), []
+        labels = [str(label) for label in self._series["channel"]]
+        return self._times, self._series["traffic"], [self.formation.channels.labels.index(label) for label in labels]
 
     def moved(self, times: Array) -> Array:
         """How far every obstacle has moved (m), shape (m, M, 2)."""

@@ -9,9 +9,11 @@ MeshcatVisualizer draws. The formation's own diagram has no part in it, so that 
 - ``obstacles``: those, with their range, at rest or moving.
 - ``stage``: what stands still: ground, goal, and where the camera is.
 - ``trails``: where the robots have been.
+- ``flights``: packets on their way, and lost ones.
+- ``marks``: what comes and goes at a moment: hands that hold, crosses on robots that failed, pins where events were.
 - ``frames``: at which times a recording needs its pictures.
 - ``recording``: the diagram, and a result recorded through it.
-- ``page``: the recording as one file.
+- ``page``, ``legend``, ``timeline``: the recording as one file, with what is seen and when events were.
 - ``knobs``, ``session``: sliders in the browser, and runs made anew with what they say.
 """
 

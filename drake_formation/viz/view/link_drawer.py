@@ -20,8 +20,8 @@ SHORTEST = 1e-3
 """A link is drawn at least as long (m): what has no length has no direction."""
 
 CHANNEL: Colour = (0.0, 0.62, 0.45, 0.55)
-SILENT = (0.6, 0.6, 0.6)
-"""Colour of a channel over which nothing new is heard."""
+SILENT, THIN = (0.25, 0.25, 0.25), 0.3
+"""Colour of a channel over which nothing new is heard, and its width as a share of others'."""
 
 
 class LinkDrawer(LeafSystem):  # type: ignore[misc]
@@ -74,7 +74,8 @@ class LinkDrawer(LeafSystem):  # type: ignore[misc]
             turned = Quaternion(np.cos(half), 0.0, 0.0, np.sin(half))
             middle = [x + dx / 2, y + dy / 2, height]
             self._meshcat.SetTransform(path, RigidTransform(turned, middle), time)
-            self._meshcat.SetProperty(path, "scale", [length, 1.0, 1.0], time)
+            width = 1.0 if alive else THIN
+            self._meshcat.SetProperty(path, "scale", [length, width, width], time)
             self._meshcat.SetProperty(path, "visible", bool(seen), time)
             if link.rest_length is not None:
                 self._colour(path, strain_colour(strain / self._largest), time)

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 from pydrake.geometry import Meshcat, MeshcatParams
 
 from drake_formation.viz.errors import PortError
-from drake_formation.viz.links import PRESSED, STRETCHED, largest_strain, moving_links
-from drake_formation.viz.playback import OLD, Playback
-from drake_formation.viz.view.link_drawer import CHANNEL, SILENT
+from drake_formation.viz.view.flights import drawn_packets
+from drake_formation.viz.view.legend import legend
 from drake_formation.viz.view.recording import record
+from drake_formation.viz.view.timeline import timeline
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 DRAKES_TITLE = "<title>Drake MeshCat</title>"
 
 CAPTION = """<style>
-#caption {{ position: fixed; left: 1em; bottom: 1em; font: 14px sans-serif; color: #333; max-width: 60em;
+#caption {{ position: fixed; left: 1em; right: 1em; bottom: .5em; font: 13px sans-serif; color: #333;
   padding: .3em .6em; background: rgba(247, 247, 250, .85) }}
 #caption b {{ padding: 0 .3em; border-radius: .2em; color: white; font-weight: normal }}
 </style>
-<div id="caption">{text}</div>
+<div id="caption">{text}{timeline}</div>
 """
 
 
@@ -53,8 +53,9 @@ def page(result: "xr.Dataset", *, follow: bool = False) -> str:
         playback = record(result, meshcat, follow=follow)
         text: str = meshcat.StaticHtml()
     title = escape(playback.title)
+    caption = CAPTION.format(text=legend(playback, drawn_packets(playback)), timeline=timeline(playback))
     start, _, end = text.replace(DRAKES_TITLE, f"<title>{title}</title>").rpartition("</body>")
-    return f"{start}{CAPTION.format(text=_caption(playback))}</body>{end}"
+    return f"{start}{caption}</body>{end}"
 
 
 @contextmanager
@@ -76,25 +77,3 @@ def quiet_meshcat(port: int | None = None) -> Iterator[Meshcat]:
         yield meshcat
     finally:
         log.setLevel(level)
-
-
-def _caption(playback: Playback) -> str:
-    """What is seen, and in which colours."""
-    links = moving_links(playback)
-    told = [f"<strong>{escape(playback.title)}</strong>"]
-    if any(link.rest_length is not None for link in links):
-        most = f"{100 * largest_strain(playback, links):.2g} %"
-        shorter, longer = _word("shorter", PRESSED), _word("longer", STRETCHED)
-        told.append(f"springs {shorter} or {longer} than at rest, full colour at {most}")
-    if any(link.rest_length is None for link in links):
-        told.append(f"{_word('channels', CHANNEL[:3])} come to a point at the robot that hears")
-    if any(link.mortal is not None for link in links):
-        told.append(f"{_word('grey', SILENT)} where nothing younger than {OLD:g} s is known")
-    if playback.lost:
-        told.append(f"shown until {playback.end:.4g} s, when robots were beyond all bounds")
-    return " · ".join(told)
-
-
-def _word(text: str, colour: object) -> str:
-    red, green, blue = (round(255 * share) for share in colour)  # type: ignore[attr-defined]
-    return f'<b style="background: rgb({red}, {green}, {blue})">{text}</b>'

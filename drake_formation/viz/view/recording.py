@@ -23,8 +23,10 @@ from drake_formation.viz.figures import robot_colours
 from drake_formation.viz.links import Link, largest_strain, moving_links
 from drake_formation.viz.playback import Playback
 from drake_formation.viz.view.carried import object_solids
-from drake_formation.viz.view.frames import RATE, key_times
+from drake_formation.viz.view.flights import Flights
+from drake_formation.viz.view.frames import key_times
 from drake_formation.viz.view.link_drawer import LinkDrawer
+from drake_formation.viz.view.marks import Marks
 from drake_formation.viz.view.obstacles import obstacle_solids
 from drake_formation.viz.view.poses import PoseSource
 from drake_formation.viz.view.robots import solids_of
@@ -38,6 +40,10 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 ROOT = "/formation"
+BODIES = f"{ROOT}/bodies"
+
+MOMENTS = 1024.0
+"""Of a recording, a second: what happens between pictures, such as a packet's flight, is as exact as that."""
 
 FEWEST, MOST, DRAWN = 300, 1200, 25_000
 """Pictures that a recording may have: so many that pictures by things that move are ``DRAWN``, between the others."""
@@ -73,14 +79,17 @@ def record(result: "xr.Dataset", meshcat: Meshcat, *, follow: bool = False) -> P
     set_stage(meshcat, f"{ROOT}/ground", low, high)
     look_at(meshcat, *(_surroundings(playback) if follow else (low, high)))
     trails = Trails(meshcat, f"{ROOT}/trails", playback, colours)
+    flights = Flights(meshcat, f"{ROOT}/packets", playback)
     diagram = viewing_diagram(playback, meshcat, links, colours)
     context = diagram.CreateDefaultContext()
-    meshcat.StartRecording(RATE, set_visualizations_while_recording=False)
+    marks = Marks(meshcat, BODIES, f"{ROOT}/events", playback)
+    meshcat.StartRecording(MOMENTS, set_visualizations_while_recording=False)
     for time, centre in zip(times, centres, strict=True):
         context.SetTime(time)
         diagram.ForcedPublish(context)
         meshcat.SetTransform(ROOT, RigidTransform([*-centre, 0.0]), time)
-    trails.record()
+    for coming_and_going in (trails, flights, marks):
+        coming_and_going.record()
     meshcat.StopRecording()
     meshcat.PublishRecording()
     return playback
@@ -124,7 +133,7 @@ def viewing_diagram(playback: Playback, meshcat: Meshcat, links: list[Link], col
 
     poses = builder.AddNamedSystem("poses", PoseSource(playback, robots, body, moving, links))
     builder.Connect(poses.GetOutputPort("poses"), scene.get_source_pose_port(source))
-    MeshcatVisualizer.AddToBuilder(builder, scene, meshcat, MeshcatVisualizerParams(prefix=f"{ROOT}/bodies"))
+    MeshcatVisualizer.AddToBuilder(builder, scene, meshcat, MeshcatVisualizerParams(prefix=BODIES))
     count = playback.formation.robots + playback.nodes
     drawer = LinkDrawer(meshcat, ROOT, links, count, largest_strain(playback, links))
     builder.AddNamedSystem("links", drawer)

@@ -11,7 +11,9 @@ from drake_formation.lowering.errors import LoweringError
 from drake_formation.scenario import Scenario
 from drake_formation.simulation import PreparedRun, SimulationError
 from drake_formation.simulation.result import labelled_result, series_of
+from drake_formation.viz.view.flights import drawn_packets
 from drake_formation.viz.view.knobs import KNOBS, Knob, changed
+from drake_formation.viz.view.legend import share
 from drake_formation.viz.view.recording import record
 
 if TYPE_CHECKING:
@@ -43,7 +45,7 @@ class Session:
         self._meshcat, self._follow, self._tell = meshcat, follow, tell
         self._scenario: Scenario = series_of(result).scenario
         self._prepared: PreparedRun | None = None
-        record(result, meshcat, follow=follow)
+        self._playback = record(result, meshcat, follow=follow)
         self._start: dict[Knob, float] = {}
         for knob in KNOBS:
             if (place := knob.shown(self._scenario)) is not None:
@@ -53,7 +55,8 @@ class Session:
         self._runs = 0
 
     def serve(self) -> None:
-        """Run again whenever that is asked for, until the session is closed."""
+        """Tell what is seen, and run again whenever that is asked for, until the session is closed."""
+        self._describe()
         while not self._meshcat.GetButtonClicks(CLOSE):
             if (clicks := self._meshcat.GetButtonClicks(AGAIN)) > self._runs:
                 self._runs = clicks
@@ -69,9 +72,17 @@ class Session:
         except (ScenarioError, SimulationError) as error:
             self._tell(str(error))
             return
-        record(labelled_result(series), self._meshcat, follow=self._follow)
         moved = [f"{k.path}={k.value(place):g}" for k, place in places.items() if place != self._start[k]]
         self._tell(f"Run with {', '.join(moved) or 'what the scenario says'}.")
+        self._playback = record(labelled_result(series), self._meshcat, follow=self._follow)
+        self._describe()
+
+    def _describe(self) -> None:
+        """Tell what the browser does not: what happened, and which packets are seen."""
+        for event in self._playback.events:
+            self._tell(str(event))
+        if len(packets := drawn_packets(self._playback)):
+            self._tell(f"Of packets {share(packets)}.")
 
     def _made_ready(self) -> PreparedRun:
         """The diagram compiled, once for all runs; or as the scenario runs best, where it cannot be."""

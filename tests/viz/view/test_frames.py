@@ -9,6 +9,8 @@ from drake_formation.viz.links import moving_links
 from drake_formation.viz.playback import Playback
 from drake_formation.viz.view.frames import RATE, REGULAR, TOLERANCE, corners, key_times
 
+SHORT = {"aggregation.duration": 6.0, "transport.duration": 6.0}
+
 
 @given(
     st.integers(0, 2**32 - 1).map(np.random.default_rng),
@@ -34,7 +36,7 @@ def test_what_goes_straight_has_two_pictures():
 
 
 def test_pictures_are_as_near_as_they_say_or_as_few_as_they_may_be():
-    playback = Playback(simulate(load_scenario("line", overrides={"transport.duration": 10.0})))
+    playback = Playback(simulate(load_scenario("line", overrides=SHORT), engine="blocks"))
     times = key_times(playback, moving_links(playback), 10_000)
     assert np.array_equal(times * RATE, np.round(times * RATE))
     every = np.linspace(0, playback.end - playback.begin, 3001)

@@ -7,17 +7,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from drake_formation.cli.app import app
+from drake_formation.cli.app import command
 from drake_formation.cli.options import Overrides, path
 from drake_formation.cli.simulating import simulate_with_progress
-from drake_formation.scenario import load_scenario
 from drake_formation.terminal import FAILED_RUN, WRONG_INPUT, say, stop
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-@app.command()
+@command(answers=False)
 def view(
     source: Annotated[
         str,
@@ -77,6 +76,7 @@ def _result(source: str, overrides: list[str] | None) -> "xr.Dataset":
     """
     from drake_formation.cli.run_folder import RESULT
     from drake_formation.places import reason
+    from drake_formation.scenario import load_scenario
 
     file = Path(source)
     if (file / RESULT).is_file():

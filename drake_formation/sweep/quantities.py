@@ -1,16 +1,14 @@
 """Names and units of what a sweep varies and measures."""
 
-import re
 import types
 from typing import Annotated, Any, Union, get_args, get_origin
 
 from pydantic import BaseModel
 
+from drake_formation.config.labels import name_of, unit_of
 from drake_formation.measuring.registry import known
 from drake_formation.scenario import Scenario
 from drake_formation.scenario.written import PartOf
-
-_UNIT = re.compile(r"\((1|deg|kg|kg m²|m|m/s|N|N/m|N s/m|N m²|s|1/s|Hz|rad|rad/s|V|A|W|J)\)")
 
 
 def metric_attributes(name: str) -> dict[str, str]:
@@ -28,11 +26,10 @@ def field_attributes(path: str) -> dict[str, str]:
     """Attributes of a swept field's coordinate: its path, and name and unit as the scenario's schema says them."""
     attributes = {"path": path}
     text = _description(Scenario, path.split("."))
-    if unit := _UNIT.search(text):
-        attributes["units"] = unit[1]
-    if name := re.split(r" \(|[;:,]", text)[0].strip():
-        symbol_alone = " " not in name
-        attributes["long_name"] = f"{_key(path)} {name}" if symbol_alone else name
+    if unit := unit_of(text):
+        attributes["units"] = unit
+    if text:
+        attributes["long_name"] = name_of(_key(path), text)
     return attributes
 
 

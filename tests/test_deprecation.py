@@ -1,6 +1,7 @@
 """Deprecations warn for one minor version, and not longer."""
 
 from importlib.metadata import version
+from pathlib import Path
 
 import pytest
 
@@ -26,3 +27,10 @@ def test_a_deprecation_says_since_when_until_when_and_what_instead():
 @pytest.mark.parametrize("deprecation", ALL, ids=lambda deprecation: deprecation.what)
 def test_none_outlives_its_time(deprecation):
     assert numbers(deprecation.since) <= numbers(version("drake-formation")) < numbers(deprecation.gone_in)
+
+
+@pytest.mark.parametrize("deprecation", ALL, ids=lambda deprecation: deprecation.what)
+def test_the_page_on_versions_has_it(deprecation):
+    page = (Path(__file__).parents[1] / "docs" / "versions.md").read_text(encoding="utf-8")
+    instead = deprecation.instead.removeprefix("use ")
+    assert f"| `{deprecation.what}` | {deprecation.since} | {deprecation.gone_in} | `{instead}` |" in page

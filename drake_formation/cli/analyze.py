@@ -8,7 +8,7 @@ import typer
 
 from drake_formation.cli.app import command
 from drake_formation.cli.options import Overrides, Source, path
-from drake_formation.terminal import WRONG_INPUT, report, stop
+from drake_formation.terminal import WRONG_INPUT, detail, report, stop
 
 
 @command()
@@ -34,13 +34,18 @@ def analyze(
     from drake_formation.terminal.tables import progress_console
 
     resolved = load_scenario(scenario, overrides=overrides)
+
+    def tell(part: str) -> None:
+        status.update(f"analyzing: {part}")
+        detail(f"analyzing: {part}")
+
     try:
         asked = Questions(period, damping_ratio, decay_rate, force_limit, topology)
         with (
             reserved(out, CERTIFICATE) if out else nullcontext() as place,
             progress_console().status("linearizing", spinner="line") as status,
         ):
-            certificate = certify(resolved, questions=asked, progress=lambda part: status.update(f"analyzing: {part}"))
+            certificate = certify(resolved, questions=asked, progress=tell)
             written = place and write_certificate(place, certificate)
     except (OutputError, IllPosedError) as error:
         stop(str(error), WRONG_INPUT)

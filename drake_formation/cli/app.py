@@ -23,9 +23,7 @@ app = typer.Typer(
 
 Json = Annotated[bool, typer.Option("--json", help="Answer with one JSON document, and nothing else.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Say nothing but errors and the bare answer.")]
-Verbose = Annotated[
-    int, typer.Option("--verbose", "-v", count=True, show_default=False, help="Say what is done, on standard error.")
-]
+Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Say what is done when, on standard error.")]
 
 
 def command(
@@ -39,7 +37,7 @@ def command(
         hidden: whether ``--help`` leaves it out.
     """
     manner: dict[str, tuple[Any, Any]] = {"as_json": (Json, False)} if answers else {}
-    manner |= {"quiet": (Quiet, False), "verbose": (Verbose, 0)}
+    manner |= {"quiet": (Quiet, False), "verbose": (Verbose, False)}
 
     def registered(function: Callable[..., None]) -> Callable[..., None]:
         @functools.wraps(function)
@@ -60,12 +58,13 @@ def command(
     return registered
 
 
-def _speak(*, as_json: bool = False, quiet: bool = False, verbose: int = 0) -> None:
+def _speak(*, as_json: bool = False, quiet: bool = False, verbose: bool = False) -> None:
     """Take up what was asked of the manner to speak, before or after the command's name."""
     MANNER.as_json |= as_json
     MANNER.quiet |= quiet
-    MANNER.go_into_details(MANNER.details + verbose)
-    if MANNER.quiet and MANNER.details:
+    if verbose:
+        MANNER.go_into_details()
+    if MANNER.quiet and MANNER.at_length:
         stop("--quiet and --verbose ask for different things; give one of them", WRONG_INPUT)
 
 
@@ -85,7 +84,7 @@ def _options(
         bool, typer.Option("--version", callback=_versions, is_eager=True, help="Say which versions these are.")
     ] = False,
     quiet: Quiet = False,
-    verbose: Verbose = 0,
+    verbose: Verbose = False,
 ) -> None:
     _speak(quiet=quiet, verbose=verbose)
 

@@ -27,7 +27,7 @@ def new(
     from drake_formation.scenario.starter import renamed, starter
     from drake_formation.shipped import shipped
 
-    file = name if name.suffix in (".yaml", ".yml") else name.with_name(f"{name.name}.yaml")
+    file = name if name.suffix in (".yaml", ".yml") else Path(f"{name}.yaml")
     known = shipped("scenario")
     if base is not None and base not in known:
         meant = nearest(base, known)

@@ -16,27 +16,26 @@ class Manner:
     Attributes:
         as_json: one JSON document instead of what people read.
         quiet: errors alone, and the bare answer of what was asked.
-        details: 1 says on standard error what is done when, 2 also what only developers ask for.
+        at_length: say on standard error what is done when.
     """
 
     as_json: bool = False
     quiet: bool = False
-    details: int = 0
+    at_length: bool = False
 
     def reset(self) -> None:
         """As at the beginning of a command."""
-        self.as_json, self.quiet, self.details = False, False, 0
+        self.as_json, self.quiet, self.at_length = False, False, False
         for handler in [handler for handler in LOG.handlers if isinstance(handler, _Told)]:
             LOG.removeHandler(handler)
         LOG.setLevel(logging.NOTSET)
 
-    def go_into_details(self, details: int) -> None:
-        """Let what the package logs be said on standard error, with 1 from level INFO on, with more from DEBUG."""
-        if details and not self.details:
+    def go_into_details(self) -> None:
+        """Let what the package logs, from level INFO on, be said on standard error."""
+        if not self.at_length:
+            self.at_length = True
             LOG.addHandler(_Told())
-        if details:
-            LOG.setLevel(logging.INFO if details == 1 else logging.DEBUG)
-        self.details = details
+            LOG.setLevel(logging.INFO)
 
     @property
     def shows_progress(self) -> bool:

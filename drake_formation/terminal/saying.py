@@ -39,7 +39,7 @@ def stop(message: str, status: int, faults: Sequence[Mapping[str, Any]] = ()) ->
         faults: what is wrong one by one, which JSON has too.
     """
     with suppress(OSError):  # nobody may be listening any more
-        if MANNER.as_json:
+        if message and MANNER.as_json:
             error = {"status": status, "message": message, "faults": [dict(fault) for fault in faults]}
             print(_json({"error": error}), file=sys.stderr, flush=True)
         elif message:

@@ -43,6 +43,9 @@ def test_a_file_may_be_named_and_a_shipped_scenario_be_the_beginning(cli):
         (["mine", "--from", "octogon"], "did you mean 'octagon'"),
         (["missing/mine"], "missing/mine.yaml: cannot be written"),
         (["my scenario"], "name"),
+        (["."], "name"),
+        (["/"], "name"),
+        (["a" * 300], "File name too long"),
         ([""], "an empty name"),
     ],
 )

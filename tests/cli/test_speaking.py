@@ -87,7 +87,9 @@ def test_nothing_of_a_terminal_comes_through_a_pipe(tmp_path):
     assert [line for line in err.splitlines() if "deprecated" not in line] == []
 
 
-@pytest.mark.parametrize("name", [name for name in COMMANDS if name not in ("run", "view", "schema", "reproduce", "compare")])
+@pytest.mark.parametrize(
+    "name", [name for name in COMMANDS if name not in ("run", "view", "schema", "reproduce", "compare")]
+)
 def test_a_program_gets_one_document_and_nothing_else(cli, name):
     Path("small.yaml").write_text(SWEEP)
     status, out, err = cli(*COMMANDS[name], "--json")

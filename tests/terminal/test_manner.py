@@ -14,26 +14,20 @@ def manner():
     made.reset()
 
 
-@pytest.mark.parametrize(("details", "told"), [(0, []), (1, ["what is done"]), (2, ["what is done", "why"])])
-def test_details_are_told_as_far_as_asked_for(manner, capsys, details, told):
-    manner.go_into_details(details)
+def test_details_are_told_where_they_are_asked_for(manner, capsys):
+    detail("before")
+    manner.go_into_details()
+    manner.go_into_details()
     detail("what is done")
     logging.getLogger("drake_formation.anything").debug("why")
     out, err = capsys.readouterr()
     assert out == ""
-    assert [line.partition("] ")[2] for line in err.splitlines()] == told
-
-
-def test_asking_twice_tells_once(manner, capsys):
-    manner.go_into_details(1)
-    manner.go_into_details(2)
-    detail("what is done")
-    assert capsys.readouterr().err.count("what is done") == 1
+    assert [line.partition("] ")[2] for line in err.splitlines()] == ["what is done"]
 
 
 def test_the_next_command_begins_anew(manner):
     handlers = list(LOG.handlers)
-    manner.go_into_details(2)
+    manner.go_into_details()
     manner.reset()
     assert LOG.handlers == handlers
     assert LOG.level == logging.NOTSET

@@ -2,10 +2,13 @@
 
 from pathlib import Path
 
-_PACKAGE = Path(__file__).parent
 
-FOLDER = next((path for path in (_PACKAGE / "diagrams", _PACKAGE.parent / "diagrams") if path.is_dir()), _PACKAGE)
-"""A wheel carries them inside the package; in a checkout they stand beside it."""
+def folder_of(package: Path) -> Path:
+    """Where a package has them: a wheel carries them inside it; in a checkout they stand beside it."""
+    return next((path for path in (package / "diagrams", package.parent / "diagrams") if path.is_dir()), package)
+
+
+FOLDER = folder_of(Path(__file__).parent)
 
 KINDS = {"scenario": FOLDER, "sweep": FOLDER / "sweeps", "comparison": FOLDER / "comparisons"}
 """Folders by what is in them."""

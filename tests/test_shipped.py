@@ -8,9 +8,18 @@ from urllib.request import url2pathname
 
 import pytest
 
-from drake_formation.shipped import KINDS, schema_file, schema_line, shipped
+from drake_formation.shipped import KINDS, folder_of, schema_file, schema_line, shipped
 
 MARK = "# yaml-language-server: $schema="
+
+
+def test_a_wheel_carries_them_inside_the_package_and_a_checkout_beside_it(tmp_path):
+    package = tmp_path / "drake_formation"
+    package.mkdir()
+    (tmp_path / "diagrams").mkdir()
+    assert folder_of(package) == tmp_path / "diagrams"
+    (package / "diagrams").mkdir()
+    assert folder_of(package) == package / "diagrams"
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -26,7 +26,8 @@ def field_attributes(path: str) -> dict[str, str]:
     """Attributes of a swept field's coordinate: its path, and name and unit as the scenario's schema says them."""
     attributes = {"path": path}
     text = _description(Scenario, path.split("."))
-    if unit := unit_of(text):
+    unit = unit_of(text)
+    if unit and "," not in unit:  # else one of its numbers has one of several
         attributes["units"] = unit
     if text:
         attributes["long_name"] = name_of(_key(path), text)

@@ -19,7 +19,8 @@ def names_of(kind: str) -> Callable[[str], list[str]]:
 def override(incomplete: str) -> list[str]:
     """What completes ``PATH=VALUE``: paths section by section, and names where a field is one of several.
 
-    It goes by the schema that the package brings, which knows the package's own parts.
+    It goes by the schema that the package brings, which knows the package's own parts. To bash a word ends at ``=``, so
+    that there the shell asks for paths alone.
     """
     schema = json.loads(schema_file("scenario").read_text(encoding="utf-8"))
     path, equals, _ = incomplete.partition("=")

@@ -16,7 +16,7 @@ help:
 	@echo "make explore    try the laws on new examples; MINUTES=10 by default"
 	@echo "make fuzz       try mutated commands, and count what came of them; MINUTES=10 SEED=7 for others"
 	@echo "make check      lint, types and tests"
-	@echo "make diagrams   export the pictures in diagrams/ anew"
+	@echo "make diagrams   export the pictures and schemas in diagrams/ anew"
 	@echo "make reproduce  rerun the paper's study into out/paper"
 	@echo "make bench      measure speed beside the peers, and write tests/benchmarks/README.md"
 	@echo "make clean      remove the environment and all results"
@@ -47,6 +47,9 @@ types: $(VENV)/installed-dev
 diagrams: $(VENV)/installed-dev
 	for name in line quadrilateral octagon s_curve shared-medium; do \
 		$(BIN)/drake-formation graphviz $$name -o diagrams/$$name.svg || exit; \
+	done
+	for kind in scenario sweep comparison; do \
+		$(BIN)/drake-formation schema $$kind > diagrams/schema/$$kind.schema.json || exit; \
 	done
 	for name in delay lossy link-failure saturated switching crowded; do \
 		$(BIN)/drake-formation run $$name --out out/$$name || exit; \

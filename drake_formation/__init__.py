@@ -12,10 +12,9 @@ Load a scenario, build its diagram, simulate it::
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from drake_formation.measuring import Metrics, metrics
-
 if TYPE_CHECKING:
     from drake_formation.diagram import build_diagram
+    from drake_formation.measuring import Metrics, metrics
     from drake_formation.measuring.check import Check, check
     from drake_formation.parameters import set_parameters
     from drake_formation.results import load_result
@@ -44,6 +43,7 @@ _HOMES = {
     "set_parameters": "parameters",
     **dict.fromkeys(["Scenario", "ScenarioError", "load_scenario", "with_overrides"], "scenario"),
     **dict.fromkeys(["SimulationError", "simulate"], "simulation"),
+    **dict.fromkeys(["Metrics", "metrics"], "measuring"),
     **dict.fromkeys(["Check", "check"], "measuring.check"),
 }
 

@@ -33,3 +33,13 @@ def test_the_table_of_laws_has_the_shipped_comparisons_laws():
     for case in comparison.cases:
         rows = table.split(f"**{case}**")[1].split("\n\n")[1]
         assert [line.split(" | ")[0].removeprefix("| ") for line in rows.splitlines()[2:]] == list(comparison.laws)
+
+
+def test_the_shell_commands_are_commands():
+    from drake_formation.cli import app
+
+    text = README.read_text(encoding="utf-8")
+    known = {command.name or command.callback.__name__: command.hidden for command in app.registered_commands}
+    used = set(re.findall(r"^drake-formation ([a-z]\S*)", text, re.MULTILINE))
+    assert used <= {name for name, hidden in known.items() if not hidden}
+    assert {"run", "new", "show", "list", "validate"} <= used

@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from rich.console import Group, RenderableType
 from rich.padding import Padding
-from rich.rule import Rule
 from rich.table import Table
 from rich.text import Text
 
@@ -13,6 +12,7 @@ from drake_formation.analysis.certificate import Certificate
 from drake_formation.analysis.linear.motion_subspaces import PARTS
 from drake_formation.analysis.stability.local_lqr import GUARANTEED_GAIN, GUARANTEED_PHASE_DEG
 from drake_formation.analysis.stability.modes import Mode
+from drake_formation.terminal.tables import heading
 
 MOST_ROWS = 16
 """Longer tables of modes are summed up by kind; the certificate has them all."""
@@ -24,9 +24,9 @@ def report(certificate: Certificate) -> RenderableType:
     for title, block in _BLOCKS.items():
         content = list(block(certificate))
         if content:
-            blocks += ["", Rule(title, align="left", style="dim"), *(Padding(part, (0, 0, 0, 2)) for part in content)]
-    heading = Text(f"{certificate.scenario.name}: certificate of the formation at rest", style="bold")
-    return Group(heading, *blocks)
+            blocks += ["", heading(title), *(Padding(part, (0, 0, 0, 2), expand=False) for part in content)]
+    name = Text(f"{certificate.scenario.name}: certificate of the formation at rest", style="bold")
+    return Group(name, *blocks)
 
 
 def _verdict(certificate: Certificate) -> Iterator[RenderableType]:

@@ -10,7 +10,7 @@ from drake_formation.analysis.certificate import Certificate
 from drake_formation.analysis.linear.errors import IllPosedError
 from drake_formation.cli.run_folder import SCENARIO
 from drake_formation.places import PICTURES, Kind, Place, Written, written
-from drake_formation.scenario import to_yaml
+from drake_formation.scenario import dump_scenario
 from drake_formation.viz.style import Drawn, draw_each
 
 CERTIFICATE_FILE = "certificate.json"
@@ -34,7 +34,7 @@ def write_certificate(place: Place, certificate: Certificate, file_format: str =
 
     def write(folder: Path) -> dict[str, str]:
         (folder / CERTIFICATE_FILE).write_text(certificate.to_json(), encoding="utf-8")
-        (folder / SCENARIO).write_text(to_yaml(certificate.scenario), encoding="utf-8")
+        dump_scenario(certificate.scenario, folder / SCENARIO)
         (folder / PICTURES).mkdir()
         drawn = {name: partial(draw, certificate) for name, draw in FIGURES.items()}
         # Many small matrices: threads of the linear algebra would wait for one another most of the time.

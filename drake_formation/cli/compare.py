@@ -5,15 +5,23 @@ from typing import Annotated
 
 import typer
 
-from drake_formation.cli.app import app
+from drake_formation.cli.app import command
+from drake_formation.cli.completion import names_of
 from drake_formation.cli.options import Format, FormatName, path
 from drake_formation.cli.runs_bar import runs_bar
-from drake_formation.terminal import FAILED_RUN, WRONG_INPUT, say, stop
+from drake_formation.terminal import FAILED_RUN, WRONG_INPUT, report, stop
 
 
-@app.command()
+@command()
 def compare(
-    source: Annotated[str, typer.Argument(metavar="COMPARISON", help="A comparison file, or a shipped one's name.")],
+    source: Annotated[
+        str,
+        typer.Argument(
+            metavar="COMPARISON",
+            help="A comparison file, or the name of a shipped one.",
+            autocompletion=names_of("comparison"),
+        ),
+    ],
     out: Annotated[
         Path,
         typer.Option(parser=path, metavar="FOLDER", help="For the tables (Markdown, CSV, LaTeX) and figures."),
@@ -22,7 +30,7 @@ def compare(
     workers: Annotated[int | None, typer.Option(min=1, help="Number of processes; default: of processors.")] = None,
 ) -> None:
     """Run one scenario under several laws and compare them in a table and figures."""
-    from drake_formation.cli.comparison_folder import COMPARISON, summary, write_comparison
+    from drake_formation.cli.comparison_folder import COMPARISON, summary, told, write_comparison
     from drake_formation.compare import load_comparison, rows, run_comparison
     from drake_formation.places import PICTURES, OutputError, reserved
     from drake_formation.sweep import SweepStoppedError
@@ -39,10 +47,18 @@ def compare(
         stop(str(error), WRONG_INPUT)
     except (SweepStoppedError, WorkerDiedError) as error:
         stop(str(error), FAILED_RUN)
-    for part in summary(comparison, table):
-        say(part)
     failed = [outcome for outcome in outcomes if outcome.failure]
     where = f"Tables in {written.folder}, figures in {written.folder / PICTURES}."
-    say("\n".join([*(f"{o.run.law}, {o.run.case}: {o.failure}" for o in failed), *written.remarks(), where]))
+    failures = [f"{outcome.run.law}, {outcome.run.case}: {outcome.failure}" for outcome in failed]
+    report(
+        {
+            "comparison": comparison.name,
+            "folder": written.folder,
+            "runs": [told(outcome) for outcome in outcomes],
+            "remarks": written.remarks(),
+        },
+        *summary(comparison, table),
+        "\n".join([*failures, *written.remarks(), where]),
+    )
     if len(failed) == len(outcomes):
         raise SystemExit(FAILED_RUN)

@@ -3,16 +3,19 @@
 import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-
-from rich.table import Table
+from typing import TYPE_CHECKING
 
 from drake_formation.cli.run_folder import SCENARIO
 from drake_formation.compare.comparison import Comparison
 from drake_formation.compare.run import Outcome
 from drake_formation.compare.table import COLUMNS, Row, as_csv, latex, markdown
 from drake_formation.places import PICTURES, Kind, Place, Written, written
-from drake_formation.scenario import to_yaml
+from drake_formation.scenario import dump_scenario
+from drake_formation.terminal.tables import table as empty_table
 from drake_formation.viz.style import attempt_each
+
+if TYPE_CHECKING:
+    from rich.table import Table
 
 TABLE, SCENARIOS, RUNS = "table.csv", "scenarios", "runs.json"
 COMPARISON = Kind(RUNS, (TABLE, "table.md", "table.tex", SCENARIOS, PICTURES, RUNS))
@@ -51,23 +54,28 @@ def write_comparison(
     return written(place, write)
 
 
-def summary(comparison: Comparison, table: Sequence[Row]) -> Iterator[Table]:
+def summary(comparison: Comparison, table: Sequence[Row]) -> "Iterator[Table]":
     """A table a case; the best figures are marked with a star."""
     for case in comparison.cases:
         title = comparison.name if len(comparison.cases) == 1 else f"{comparison.name}, {case}"
-        shown = Table("law", *(f"{label} ({unit})" for label, unit in COLUMNS.values()), "channels", title=title)
+        shown = empty_table("law", *(f"{label} ({unit})" for label, unit in COLUMNS.values()), "channels", title=title)
         for row in (row for row in table if row.case == case):
             cells = [f"{cell.text()} *" if cell.best else cell.text() for cell in row.cells.values()]
             shown.add_row(row.law, *cells, str(row.channels))
         yield shown
 
 
-def _written_run(folder: Path, number: int, outcome: Outcome) -> dict[str, object]:
-    """A run's own figures; its scenario, which repeats it, is written beside them."""
-    scenario = f"{number}-{SCENARIO}"
-    (folder / SCENARIOS / scenario).write_text(to_yaml(outcome.run.scenario), encoding="utf-8")
+def told(outcome: Outcome) -> dict[str, object]:
+    """A run's own figures."""
     run = outcome.run
     return {
-        "law": run.law, "case": run.case, "seed": run.seed, "scenario": f"{SCENARIOS}/{scenario}",
-        "metrics": outcome.metrics, "failure": outcome.failure or None,
+        "law": run.law, "case": run.case, "seed": run.seed, "metrics": outcome.metrics,
+        "failure": outcome.failure or None,
     }  # fmt: skip
+
+
+def _written_run(folder: Path, number: int, outcome: Outcome) -> dict[str, object]:
+    """The same, and where its scenario, which repeats it, is written beside them."""
+    scenario = f"{SCENARIOS}/{number}-{SCENARIO}"
+    dump_scenario(outcome.run.scenario, folder / scenario)
+    return told(outcome) | {"scenario": scenario}

@@ -7,12 +7,12 @@ from typing import Annotated
 
 import typer
 
-from drake_formation.cli.app import app
+from drake_formation.cli.app import command
 from drake_formation.cli.options import path
-from drake_formation.terminal import WRONG_INPUT, say, stop
+from drake_formation.terminal import WRONG_INPUT, detail, report, stop
 
 
-@app.command()
+@command()
 def export(
     source: Annotated[str, typer.Argument(metavar="RESULT", help="A run's folder, or its result.nc.")],
     csv: Annotated[
@@ -54,6 +54,7 @@ def export(
         for name, file in files.items():
             with reserved_file(file) as place, explained(file):
                 write[name](place)
-            say(f"Result in {file}.")
+            detail(f"written: {file}")
     except (ValueError, OutputError, MissingPackageError) as error:
         stop(str(error), WRONG_INPUT)
+    report({"files": files}, "\n".join(f"Result in {file}." for file in files.values()))

@@ -6,10 +6,9 @@ from typing import Annotated
 
 import typer
 
-from drake_formation.cli.app import app
+from drake_formation.cli.app import command
 from drake_formation.cli.options import Overrides, Source, path
-from drake_formation.scenario import load_scenario
-from drake_formation.terminal import WRONG_INPUT, say, stop
+from drake_formation.terminal import WRONG_INPUT, report, stop
 
 
 class ViewName(StrEnum):
@@ -19,7 +18,7 @@ class ViewName(StrEnum):
     FORMATION = "formation"
 
 
-@app.command()
+@command()
 def graphviz(
     scenario: Source,
     output: Annotated[
@@ -38,7 +37,7 @@ def graphviz(
     """Draw a scenario's block diagram."""
     from drake_formation.diagram import build_diagram
     from drake_formation.places import OutputError, reason, reserved_file
-    from drake_formation.scenario import resolve
+    from drake_formation.scenario import load_scenario, resolve
     from drake_formation.viz.graphviz import write_diagram
     from drake_formation.viz.graphviz_formation import write_formation
     from drake_formation.viz.rendering import require_format
@@ -57,4 +56,4 @@ def graphviz(
         stop(str(error), WRONG_INPUT)
     except OSError as error:
         stop(f"{output}: cannot be written: {reason(error)}", WRONG_INPUT)
-    say(f"Diagram in {output}.")
+    report({"scenario": resolved.name, "file": output, "view": view.value}, f"Diagram in {output}.")

@@ -6,9 +6,19 @@ from typing import Annotated
 
 import typer
 
-Source = Annotated[str, typer.Argument(metavar="SCENARIO", help="A scenario file, or the name of a shipped one.")]
+from drake_formation.cli.completion import names_of, override
+
+Source = Annotated[
+    str,
+    typer.Argument(
+        metavar="SCENARIO", help="A scenario file, or the name of a shipped one.", autocompletion=names_of("scenario")
+    ),
+]
 Overrides = Annotated[
-    list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Replace a field, e.g. springs.stiffness=3e4.")
+    list[str] | None,
+    typer.Option(
+        "--set", metavar="PATH=VALUE", help="Replace a field, e.g. springs.stiffness=3e4.", autocompletion=override
+    ),
 ]
 
 

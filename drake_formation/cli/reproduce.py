@@ -5,13 +5,13 @@ from typing import Annotated
 
 import typer
 
-from drake_formation.cli.app import app
+from drake_formation.cli.app import command
 from drake_formation.cli.options import FormatName, path
 from drake_formation.cli.runs_bar import runs_bar
-from drake_formation.terminal import FAILED_RUN, WRONG_INPUT, say, stop
+from drake_formation.terminal import FAILED_RUN, WRONG_INPUT, report, stop
 
 
-@app.command()
+@command()
 def reproduce(
     only: Annotated[list[str] | None, typer.Option(metavar="NAME", help="A part, such as table3, fig7 or fit.")] = None,
     cell: Annotated[
@@ -54,7 +54,10 @@ def reproduce(
         except (SimulationError, SweepStoppedError) as error:
             stop(str(error), FAILED_RUN)
     where = f"Report in {written.folder / 'report.html'}, tables in {written.folder / 'tables.csv'}."
-    say("\n".join([*written.remarks(), where]))
+    report(
+        {"folder": written.folder, "report": written.folder / "report.html", "remarks": written.remarks()},
+        "\n".join([*written.remarks(), where]),
+    )
 
 
 def _topologies(folder: Path) -> None:
@@ -69,9 +72,11 @@ def _topologies(folder: Path) -> None:
             stop(str(error), WRONG_INPUT)
         except SweepStoppedError as error:
             stop(str(error), FAILED_RUN)
-    say(
+    difference = largest_difference(found)
+    report(
+        {"file": folder / KEPT, "graphs": len(found), "largest_difference_cm": float(difference)},
         f"{len(found)} graphs tried, in {folder / KEPT}. Their errors differ from those that the report uses by at "
-        f"most {largest_difference(found):.1g} cm."
+        f"most {difference:.1g} cm.",
     )
 
 
@@ -80,8 +85,9 @@ def _rerun(cell: str) -> None:
     from drake_formation.simulation import SimulationError
 
     try:
-        say(rerun(cell))
+        found = rerun(cell)
     except ValueError as error:
         stop(str(error), WRONG_INPUT)
     except SimulationError as error:
         stop(str(error), FAILED_RUN)
+    report({"cell": cell, "found": found}, found)

@@ -5,24 +5,23 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.markup import escape
-from rich.table import Table
 
-from drake_formation.cli.app import app
+from drake_formation.cli.app import command
 from drake_formation.cli.film import filming
 from drake_formation.cli.options import ENGINES_HELP, EngineName, Format, FormatName, Overrides, Source, path
 from drake_formation.cli.simulating import progress_bar, simulate_with_progress
-from drake_formation.scenario import Scenario, load_scenario, warnings
-from drake_formation.terminal import FAILED_RUN, WRONG_INPUT, say, stop
+from drake_formation.terminal import FAILED_RUN, WRONG_INPUT, detail, report, stop
 
 if TYPE_CHECKING:
     import xarray as xr
+    from rich.table import Table
 
     from drake_formation.measuring import Metrics
     from drake_formation.measuring.check import Check
+    from drake_formation.scenario import Scenario
 
 
-@app.command()
+@command()
 def run(
     scenario: Source,
     overrides: Overrides = None,
@@ -50,6 +49,7 @@ def run(
     from drake_formation.measuring import metrics
     from drake_formation.places import PICTURES, OutputError, reserved, reserved_file
     from drake_formation.places.errors import explained
+    from drake_formation.scenario import load_scenario, warnings
     from drake_formation.simulation import SimulationError, events
     from drake_formation.viz.errors import FilmError
 
@@ -62,12 +62,16 @@ def run(
         ):
             try:
                 result = simulate_with_progress(resolved, engine)
+                why = result.attrs.get("engine_reason", "as asked for")
+                detail(f"simulated by the engine {result.attrs['engine']}: {why}")
                 figures = metrics(result)
+                detail("measured")
             except SimulationError as error:
                 kept = write_failed_run(place, resolved, error.partial, str(error), file_format.value)
                 recorded = f"What was recorded until then is in {kept.folder}."
                 stop("\n".join([str(error), *kept.remarks(), recorded]), FAILED_RUN)
             written = write_run(place, resolved, result, figures, file_format.value)
+            detail(f"written: {written.folder}")
             shoot(result)
             if csv and table:
                 with explained(csv):
@@ -77,15 +81,31 @@ def run(
             write_check(written.folder, checked)
     except (OutputError, LoweringError, FilmError) as error:
         stop(str(error), WRONG_INPUT)
-    say(_summary(result, figures, checked))
-    remark = [str(result.attrs["remark"])] if "remark" in result.attrs else []
-    where = f"Results in {written.folder}, pictures in {written.folder / PICTURES}."
-    warned = [f"warning: {warning}" for warning in warnings(resolved)]
-    beside = [*([f"Film in {film}."] if film else []), *([f"Table in {csv}."] if csv else [])]
-    say("\n".join([*map(str, events(result)), *warned, *remark, *written.remarks(), where, *beside]))
+    what_happened, warned = events(result), list(map(str, warnings(resolved)))
+    remarks = [*([str(result.attrs["remark"])] if "remark" in result.attrs else []), *written.remarks()]
+    places = [f"Results in {written.folder}, pictures in {written.folder / PICTURES}."]
+    places += [*([f"Film in {film}."] if film else []), *([f"Table in {csv}."] if csv else [])]
+    report(
+        {
+            "scenario": resolved.name,
+            "folder": written.folder,
+            "engine": result.attrs["engine"],
+            "engine_reason": result.attrs.get("engine_reason"),
+            "metrics": figures.to_dict(),
+            "check": checked and checked.to_dict(),
+            "events": [event.to_dict() for event in what_happened],
+            "warnings": warned,
+            "remarks": remarks,
+            "film": film,
+            "table": csv,
+        },
+        _summary(result, figures, checked),
+        f"engine {result.attrs['engine']}: {why}",
+        "\n".join([*map(str, what_happened), *(f"warning: {warning}" for warning in warned), *remarks, *places]),
+    )
 
 
-def _check_with_progress(scenario: Scenario, result: "xr.Dataset") -> "Check":
+def _check_with_progress(scenario: "Scenario", result: "xr.Dataset") -> "Check":
     from drake_formation.measuring.check import check
     from drake_formation.simulation import SimulationError
 
@@ -96,22 +116,21 @@ def _check_with_progress(scenario: Scenario, result: "xr.Dataset") -> "Check":
         stop(f"The run is complete, but its check is not: {error}", FAILED_RUN)
 
 
-def _summary(result: "xr.Dataset", figures: "Metrics", check: "Check | None") -> Table:
+def _summary(result: "xr.Dataset", figures: "Metrics", check: "Check | None") -> "Table":
     from drake_formation.measuring.registry import known
+    from drake_formation.terminal.tables import table
 
-    reason = result.attrs.get("engine_reason", "as asked for")
-    caption = escape(f"engine {result.attrs['engine']}: {reason}")
     columns = ("metric", "value", "unit") + (("check differs by",) if check else ())
-    table = Table(*columns, title=f"{result.attrs['title']}, transport", caption=caption)
+    summary = table(*columns, title=f"{result.attrs['title']}, transport")
     for name, metric in known().items():
         if figures[name] is None:  # nothing to measure
             continue
-        table.add_row(
+        summary.add_row(
             metric.title, _number(figures[name]), metric.unit, *([_number(check.metrics[name])] if check else [])
         )
     if check:
-        table.add_row("positions at any time", "", "m", _number(check.position_difference_m))
-    return table
+        summary.add_row("positions at any time", "", "m", _number(check.position_difference_m))
+    return summary
 
 
 def _number(value: float | list[float] | None) -> str:

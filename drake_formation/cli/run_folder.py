@@ -11,7 +11,7 @@ from drake_formation.measuring import Metrics
 from drake_formation.measuring.check import Check
 from drake_formation.places import PICTURES, Kind, Place, Written, written
 from drake_formation.results import RESULT
-from drake_formation.scenario import Scenario, to_yaml
+from drake_formation.scenario import Scenario, dump_scenario
 from drake_formation.simulation.events import events
 from drake_formation.viz.graphviz import write_diagram
 from drake_formation.viz.style import attempt_each
@@ -79,7 +79,7 @@ def write_failed_run(
 
 
 def _write_recorded(folder: Path, scenario: Scenario, result: xr.Dataset) -> None:
-    (folder / SCENARIO).write_text(to_yaml(scenario), encoding="utf-8")
+    dump_scenario(scenario, folder / SCENARIO)
     compressed = {name: {"zlib": True} for name, variable in result.data_vars.items() if "time" in variable.dims}
     try:
         result.to_netcdf(folder / RESULT, engine="netcdf4", encoding=compressed)

@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
-from drake_formation.cli.app import app
+from drake_formation.cli.app import command
+from drake_formation.cli.completion import names_of
 from drake_formation.cli.options import ENGINES_HELP, Format, FormatName, path
-from drake_formation.terminal import FAILED_RUN, INTERRUPTED, WRONG_INPUT, Stopped, say, stop
+from drake_formation.terminal import FAILED_RUN, INTERRUPTED, WRONG_INPUT, Stopped, report, stop
 
 
 class SweepEngineName(StrEnum):
@@ -27,9 +27,14 @@ class ExecutorName(StrEnum):
     PROCESSES = "processes"
 
 
-@app.command()
+@command()
 def sweep(
-    source: Annotated[str, typer.Argument(metavar="SWEEP", help="A sweep file, or the name of a shipped one.")],
+    source: Annotated[
+        str,
+        typer.Argument(
+            metavar="SWEEP", help="A sweep file, or the name of a shipped one.", autocompletion=names_of("sweep")
+        ),
+    ],
     out: Annotated[
         Path, typer.Option(parser=path, metavar="FOLDER", help="For the runs, the dataset and its figures.")
     ],
@@ -44,11 +49,12 @@ def sweep(
 ) -> None:
     """Run a scenario over grids, lists and random samples of its fields; goes on where it was stopped."""
     from drake_formation.sweep import SweepError, SweepStoppedError, load_sweep, run_sweep
-    from drake_formation.sweep.terminal import closing, kept_message, progress_bar, summary
+    from drake_formation.sweep.terminal import closing, kept_message, progress_bar, summary, told
+    from drake_formation.terminal.tables import progress_console
 
     loaded = load_sweep(source)
     try:
-        with progress_bar(loaded.name, Console(stderr=True)) as progress:
+        with progress_bar(loaded.name, progress_console()) as progress:
             results = run_sweep(
                 loaded, out, engine=engine.value, executor=executor.value, workers=workers, scheduler=scheduler,
                 retry_failed=retry_failed, file_format=file_format.value, progress=progress,
@@ -63,7 +69,6 @@ def sweep(
         stop(f"{reason.message}\n{kept_message(out)}", reason.status)
     with results:
         message, failed = closing(results, out)
-        say(summary(results))
-    say(message)
+        report({"folder": out, **told(results)}, summary(results), message)
     if failed:
         raise SystemExit(FAILED_RUN)

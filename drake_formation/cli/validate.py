@@ -1,42 +1,56 @@
 """``drake-formation validate``: what a scenario reads as."""
 
-from typing import Any
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
 
-from rich.table import Table
-
-from drake_formation.cli.app import app
+from drake_formation.cli.app import command
 from drake_formation.cli.options import Overrides, Source
-from drake_formation.formation import graphs
-from drake_formation.formation.rigidity import rigid_rank, rigidity_rank
-from drake_formation.scenario import Scenario, load_scenario, resolve, warnings
-from drake_formation.terminal import say
+from drake_formation.terminal import report
+
+if TYPE_CHECKING:
+    from drake_formation.scenario import Scenario
 
 
-@app.command()
+@command()
 def validate(scenario: Source, overrides: Overrides = None) -> None:
     """Check a scenario and say what it reads as, and what of it may not be meant."""
+    from drake_formation.scenario import load_scenario, warnings
+    from drake_formation.terminal.tables import table
+
     loaded = load_scenario(scenario, overrides=overrides)
-    say(_description(loaded))
-    for warning in warnings(loaded):
-        say(f"warning: {warning}")
+    read, warned = list(_readings(loaded)), list(map(str, warnings(loaded)))
+    shown = table("part", "reads as", title=loaded.name)
+    for part, reading in read:
+        shown.add_row(part, reading)
+    report(
+        {
+            "scenario": loaded.model_dump(mode="json"),
+            "reads_as": [{"part": part, "reading": reading} for part, reading in read],
+            "warnings": warned,
+        },
+        shown,
+        *(f"warning: {warning}" for warning in warned),
+    )
 
 
-def _description(scenario: Scenario) -> Table:
-    """What a scenario reads as."""
+def _readings(scenario: "Scenario") -> Iterator[tuple[str, str]]:
+    """What each part of a scenario reads as."""
     from drake_formation.config.errors import shown
+    from drake_formation.formation import graphs
+    from drake_formation.formation.rigidity import rigid_rank, rigidity_rank
     from drake_formation.parts.roles import ROLES
+    from drake_formation.scenario import resolve
     from drake_formation.scenario.owned import section
 
     formation = resolve(scenario)
-    table = Table("part", "reads as", title=scenario.name)
-    table.add_row("formation", f"{scenario.formation.shape} of {formation.robots}")
+    yield "formation", f"{scenario.formation.shape} of {formation.robots}"
     for name, graph in (("springs", formation.springs.graph), ("consensus", formation.channels.graph)):
         edges = " ".join(f"{i + 1}-{j + 1}" for i, j in graphs.edges(graph)) or "none"
-        table.add_row(f"{name} edges", edges)
-        table.add_row(f"{name} algebraic connectivity", f"{graphs.algebraic_connectivity(graph):.4g}")
+        yield f"{name} edges", edges
+        yield f"{name} algebraic connectivity", f"{graphs.algebraic_connectivity(graph):.4g}"
         rank = rigidity_rank(formation.slots, graphs.edges(graph))
-        table.add_row(f"{name} rigidity", f"rank {rank} of {rigid_rank(formation.robots)}")
-    table.add_row("channels", str(len(formation.channels.pairs)))
+        yield f"{name} rigidity", f"rank {rank} of {rigid_rank(formation.robots)}"
+    yield "channels", str(len(formation.channels.pairs))
     for name, role in ROLES.items():
         if name == "spring" and formation.has_body:
             continue
@@ -45,18 +59,18 @@ def _description(scenario: Scenario) -> Table:
         fields = {key: its for cls in classes for key, its in cls.Config.model_fields.items()}
         given = [_reads(key, its.description or "", getattr(written, key)) for key, its in fields.items()]
         kind = shown(getattr(written, role.chooser))
-        table.add_row(".".join(map(str, role.section)), ": ".join(filter(None, [kind, ", ".join(given)])))
+        yield ".".join(map(str, role.section)), ": ".join(filter(None, [kind, ", ".join(given)]))
     for failure in scenario.failures:
         told = f"robot {failure.robot} {failure.kind} at {failure.time:g} s; the others {failure.response}"
-        table.add_row("failures", told)
-    return table
+        yield "failures", told
 
 
-def _reads(name: str, description: str, value: Any) -> str:
-    """A field with its value, its symbol and its unit, as far as its description has them."""
+def _reads(key: str, description: str, value: Any) -> str:
+    """A field's name, its value, and its unit where it is one for all its numbers."""
     from drake_formation.config.errors import shown
+    from drake_formation.config.labels import name_of, unit_of
 
-    label, _, rest = description.partition(" (")
-    unit, closed, _ = rest.partition(")")
+    unit = unit_of(description)
     text = f"{value:g}" if isinstance(value, float) else shown(value)
-    return f"{label} = {text} {unit}" if closed and len(label) < 40 else f"{name} = {text}"
+    name = name_of(key, description) if unit else key
+    return f"{name} = {text} {unit if unit != '1' and ',' not in unit else ''}".rstrip()

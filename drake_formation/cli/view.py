@@ -7,17 +7,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from drake_formation.cli.app import app
+from drake_formation.cli.app import command
 from drake_formation.cli.options import Overrides, path
 from drake_formation.cli.simulating import simulate_with_progress
-from drake_formation.scenario import load_scenario
 from drake_formation.terminal import FAILED_RUN, WRONG_INPUT, say, stop
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-@app.command()
+@command(answers=False)
 def view(
     source: Annotated[
         str,
@@ -76,6 +75,7 @@ def _result(source: str, overrides: list[str] | None) -> "xr.Dataset":
         ScenarioError, SimulationError: the scenario is wrong, or the run failed.
     """
     from drake_formation.results import RESULT, load_result
+    from drake_formation.scenario import load_scenario
 
     if Path(source).suffix != Path(RESULT).suffix and not (Path(source) / RESULT).is_file():
         return simulate_with_progress(load_scenario(source, overrides=overrides))

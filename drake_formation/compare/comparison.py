@@ -6,10 +6,11 @@ from pathlib import Path
 
 from drake_formation.compare.schema import SECTIONS, ComparisonFile, Variant
 from drake_formation.config.errors import Fault, ScenarioError
-from drake_formation.scenario import Scenario, shipped_scenarios
+from drake_formation.scenario import Scenario
 from drake_formation.scenario.load import find_file
 from drake_formation.scenario.source import Document, parse, read_text
 from drake_formation.scenario.validate import validate
+from drake_formation.shipped import shipped
 from drake_formation.sweep.base import base_document, with_values
 from drake_formation.sweep.faults import parsed
 from drake_formation.sweep.limits import value_faults
@@ -80,8 +81,7 @@ def load_comparison(source: str | Path) -> Comparison:
 
 def shipped_comparisons() -> dict[str, Path]:
     """Files of the comparisons that come with the package, by name."""
-    folder = next(iter(shipped_scenarios().values())).parent / "comparisons"
-    return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
+    return shipped("comparison")
 
 
 def _runs(document: Document, model: ComparisonFile, base: Document) -> Iterator[Run]:

@@ -4,6 +4,7 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
+from drake_formation.config.json_schema import schema_of
 from drake_formation.config.values import Section
 from drake_formation.sweep.schema import Base, FieldPath, Name
 
@@ -35,6 +36,11 @@ class ComparisonFile(Section):
     seeds: Annotated[tuple[Annotated[int, Field(ge=0)], ...], Field(strict=False)] = Field(
         default=(), description="for robots.start.random.seed, one run each; the scenario's own start if not given"
     )
+
+
+def json_schema() -> dict[str, Any]:
+    """JSON Schema of comparison files; see :mod:`drake_formation.config.json_schema`."""
+    return schema_of(ComparisonFile, "drake_formation comparison")
 
 
 SECTIONS: dict[str | int, type[Section]] = {"laws": Variant, "cases": Variant}

@@ -8,7 +8,9 @@ from ruamel.yaml import YAML
 from ruamel.yaml.nodes import ScalarNode, SequenceNode
 from ruamel.yaml.representer import SafeRepresenter
 
+from drake_formation.config.json_schema import schema_of
 from drake_formation.scenario.schema import Scenario
+from drake_formation.shipped import schema_line
 
 
 def to_yaml(scenario: Scenario) -> str:
@@ -25,21 +27,17 @@ def to_yaml(scenario: Scenario) -> str:
 
 
 def dump_scenario(scenario: Scenario, path: str | Path) -> None:
-    """Write a scenario to a file as :func:`to_yaml` gives it.
+    """Write a scenario to a file as :func:`to_yaml` gives it, with a line by which editors find its schema.
 
     Raises:
         OSError: the file cannot be written.
     """
-    Path(path).write_text(to_yaml(scenario), encoding="utf-8")
+    Path(path).write_text(schema_line("scenario") + to_yaml(scenario), encoding="utf-8")
 
 
 def json_schema() -> dict[str, Any]:
-    """JSON Schema of scenario files, for editors that complete and explain while one writes."""
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        **Scenario.model_json_schema(),
-        "title": "drake_formation scenario",
-    }
+    """JSON Schema of scenario files; see :mod:`drake_formation.config.json_schema`."""
+    return schema_of(Scenario, "drake_formation scenario")
 
 
 class _Representer(SafeRepresenter):

@@ -1,5 +1,6 @@
 """Loading scenarios: the shipped ones by name, others from files, and variants of them."""
 
+import logging
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -8,6 +9,9 @@ from drake_formation.scenario.overrides import Overrides, apply, plain
 from drake_formation.scenario.schema import Scenario
 from drake_formation.scenario.source import Document, read
 from drake_formation.scenario.validate import validate
+from drake_formation.shipped import shipped
+
+LOG = logging.getLogger(__name__)
 
 
 def load_scenario(source: str | Path, *, overrides: Overrides | None = None) -> Scenario:
@@ -24,7 +28,9 @@ def load_scenario(source: str | Path, *, overrides: Overrides | None = None) -> 
     Raises:
         ScenarioError: with all faults found, each with file and line or with the override it came from.
     """
-    return validate(apply(read(find_file(source, shipped_scenarios(), "scenario")), overrides))
+    file = find_file(source, shipped_scenarios(), "scenario")
+    LOG.info("scenario: %s", file)
+    return validate(apply(read(file), overrides))
 
 
 def with_overrides(scenario: Scenario, overrides: Overrides) -> Scenario:
@@ -42,18 +48,15 @@ def with_overrides(scenario: Scenario, overrides: Overrides) -> Scenario:
 
 def shipped_scenarios() -> dict[str, Path]:
     """Files of the scenarios that come with the package, by name."""
-    package = Path(__file__).parents[1]
-    # A wheel carries the scenarios inside the package; in a checkout they stand beside it.
-    folder = next((path for path in (package / "diagrams", package.parent / "diagrams") if path.is_dir()), package)
-    return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
+    return shipped("scenario")
 
 
-def find_file(source: str | Path, shipped: Mapping[str, Path], kind: str) -> Path:
+def find_file(source: str | Path, known: Mapping[str, Path], kind: str) -> Path:
     """A file, or a shipped one by its name; a file of that name comes first.
 
     Args:
         source: the file or name.
-        shipped: what comes with the package, by name.
+        known: what comes with the package, by name.
         kind: what it is to be, for the message.
 
     Raises:
@@ -66,12 +69,12 @@ def find_file(source: str | Path, shipped: Mapping[str, Path], kind: str) -> Pat
         raise ScenarioError([Fault((), f"not a usable path: {error}", origin=str(source) or repr(source))]) from error
     if exists and not folder:
         return path
-    if str(source) in shipped:
-        return shipped[str(source)]
+    if str(source) in known:
+        return known[str(source)]
     message = "a folder, not a file" if folder else f"no such file or shipped {kind}"
-    allowed = f"a file, {', '.join(shipped)}"
+    allowed = f"a file, {', '.join(known)}"
     raise ScenarioError(
-        [Fault((), message, "", allowed, nearest(path.stem, shipped), origin=str(source) or repr(source))]
+        [Fault((), message, "", allowed, nearest(path.stem, known), origin=str(source) or repr(source))]
     )
 
 

@@ -89,7 +89,7 @@ class RandomBox(Section):
 class RandomStart(Section):
     """Random starting positions."""
 
-    random: RandomBox
+    random: RandomBox = Field(description="where, and by which seed")
 
 
 class FormationStart(Section):
@@ -127,7 +127,7 @@ class DirectedChannel(Section):
 
     speaker: int = Field(description="robot j that sends its state, from 1")
     listener: int = Field(description="robot i that hears it, from 1")
-    weight: NonNegative = Field(default=1.0, description="γ_ij, how much it counts (Sec. 2.1); paper: 1")
+    weight: NonNegative = Field(default=1.0, description="γ_ij (1), how much it counts (Sec. 2.1); paper: 1")
 
 
 def _channel_kind(value: Any) -> str:
@@ -218,7 +218,7 @@ class Simulation(Section):
     )
     start_time: NonNegative = Field(default=0.0, description="time at which the scenario begins (s)")
     target_realtime_rate: NonNegative = Field(
-        default=0.0, description="1 runs as fast as the clock; 0 as fast as it can"
+        default=0.0, description="seconds simulated a second (1): 1 runs as fast as the clock, 0 as fast as it can"
     )
 
 
@@ -260,8 +260,8 @@ class Scenario(Section):
         default_factory=PartOf("actuator").default,
         description="what robots exert of the control forces asked of them; paper: ideal",
     )
-    aggregation: Aggregation = Aggregation()
-    transport: Transport
+    aggregation: Aggregation = Field(default=Aggregation(), description="how long robots gather before they carry")
+    transport: Transport = Field(description="where to, how long and how the object is carried")
     failures: tuple[Failure, ...] = Field(default=(), strict=False, description="robots that fail; paper: none")
     seed: int = Field(
         default=0,
@@ -269,7 +269,7 @@ class Scenario(Section):
         description="of all that is random in the scenario; every part draws from a stream of its own, named by its "
         "place in the diagram; chosen: 0",
     )
-    simulator: Simulation = Simulation()
+    simulator: Simulation = Field(default=Simulation(), description="how accurately all is integrated")
 
     @model_serializer(mode="wrap")
     def _as_it_may_be_written(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:

@@ -6,11 +6,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from drake_formation.scenario import Fault, ScenarioError, shipped_scenarios
+from drake_formation.scenario import Fault, ScenarioError
 from drake_formation.scenario.load import find_file
 from drake_formation.scenario.overrides import apply, plain
 from drake_formation.scenario.source import Document, parse, read_text
 from drake_formation.scenario.validate import validate
+from drake_formation.shipped import shipped
 from drake_formation.sweep.axes import Axis, resolve
 from drake_formation.sweep.base import base_document, placed
 from drake_formation.sweep.coordinates import name_faults
@@ -57,8 +58,7 @@ def load_sweep(source: str | Path | Mapping[str, Any]) -> Sweep:
 
 def shipped_sweeps() -> dict[str, Path]:
     """Files of the sweeps that come with the package, by name."""
-    folder = next(iter(shipped_scenarios().values())).parent / "sweeps"
-    return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
+    return shipped("sweep")
 
 
 def _document(source: Mapping[str, Any]) -> Document:

@@ -1,20 +1,14 @@
 """Names and units of what a sweep varies and measures."""
 
-import re
 import types
 from typing import Annotated, Any, Union, get_args, get_origin
 
 from pydantic import BaseModel
 
+from drake_formation.config.labels import name_of, unit_of
 from drake_formation.measuring.registry import known
 from drake_formation.scenario import Scenario
 from drake_formation.scenario.written import PartOf
-
-_UNITS = (
-    "1", "deg", "kg", "kg m²", "m", "m/s", "m/s²", "N", "N/m", "N s/m", "N m²", "N/s", "s", "1/s", "1/s²", "Hz", "rad",
-    "rad/s", "V", "A", "W", "J", "dB", "dBm", "bit", "bit/s",
-)  # fmt: skip
-_UNIT = re.compile(rf"\(({'|'.join(map(re.escape, _UNITS))})\)")
 
 
 def metric_attributes(name: str) -> dict[str, str]:
@@ -32,11 +26,11 @@ def field_attributes(path: str) -> dict[str, str]:
     """Attributes of a swept field's coordinate: its path, and name and unit as the scenario's schema says them."""
     attributes = {"path": path}
     text = _description(Scenario, path.split("."))
-    if unit := _UNIT.search(text):
-        attributes["units"] = unit[1]
-    if name := re.split(r" \(|[;:,]", text)[0].strip():
-        symbol_alone = " " not in name
-        attributes["long_name"] = f"{_key(path)} {name}" if symbol_alone else name
+    unit = unit_of(text)
+    if unit and "," not in unit:  # else one of its numbers has one of several
+        attributes["units"] = unit
+    if text:
+        attributes["long_name"] = name_of(_key(path), text)
     return attributes
 
 

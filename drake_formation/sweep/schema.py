@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag
 
+from drake_formation.config.json_schema import schema_of
 from drake_formation.config.values import Positive, Section
 from drake_formation.simulation.result import VARIABLES, VECTOR
 
@@ -16,6 +17,9 @@ Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$", max_length=
 
 FieldPath = Annotated[str, Field(pattern=r"^[^.]+(\.[^.]+)*$", max_length=200)]
 """Dotted path of a scenario's field, such as ``springs.stiffness`` or ``robots.mass.0``."""
+
+ITS_UNIT: dict[str, Any] = {"unit": "as the field's"}
+"""Of what a sweep varies."""
 
 Interval = Annotated[tuple[float, float], Field(strict=False)]
 Steps = Annotated[tuple[float, float, Annotated[int, Field(ge=1)]], Field(strict=False)]
@@ -55,8 +59,12 @@ class GridAxis(Section):
         Discriminator(_path_kind),
     ] = Field(description="dotted path of a field, or a list of paths that take the same value")
     values: Values | None = Field(default=None, description="the values: numbers, names, lists, mappings")
-    linspace: Steps | None = Field(default=None, description="[first, last, count], evenly spaced")
-    logspace: Steps | None = Field(default=None, description="[first, last, count], evenly spaced in the logarithm")
+    linspace: Steps | None = Field(
+        default=None, description="[first, last, count], evenly spaced", json_schema_extra=ITS_UNIT
+    )
+    logspace: Steps | None = Field(
+        default=None, description="[first, last, count], evenly spaced in the logarithm", json_schema_extra=ITS_UNIT
+    )
     labels: Labels | None = Field(default=None, description="what to call each value; the value itself if not given")
 
 
@@ -89,9 +97,11 @@ class ListAxis(Section):
 class Distribution(Section):
     """One of four distributions."""
 
-    uniform: Interval | None = Field(default=None, description="[low, high]")
-    loguniform: Interval | None = Field(default=None, description="[low, high], uniform in the logarithm")
-    normal: Interval | None = Field(default=None, description="[mean, standard deviation]")
+    uniform: Interval | None = Field(default=None, description="[low, high]", json_schema_extra=ITS_UNIT)
+    loguniform: Interval | None = Field(
+        default=None, description="[low, high], uniform in the logarithm", json_schema_extra=ITS_UNIT
+    )
+    normal: Interval | None = Field(default=None, description="[mean, standard deviation]", json_schema_extra=ITS_UNIT)
     integers: Annotated[tuple[int, int], Field(strict=False)] | None = Field(
         default=None, description="[low, high], whole numbers, both ends included"
     )
@@ -142,6 +152,11 @@ class SweepFile(Section):
         description="what varies: axes of kind grid, zip, list or random, which multiply"
     )
     trajectories: Trajectories | None = Field(default=None, description="time series to keep; none if not given")
+
+
+def json_schema() -> dict[str, Any]:
+    """JSON Schema of sweep files; see :mod:`drake_formation.config.json_schema`."""
+    return schema_of(SweepFile, "drake_formation sweep")
 
 
 SECTIONS: dict[str | int, type[Section]] = {

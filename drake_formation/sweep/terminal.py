@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import xarray as xr
 from rich.console import Console
@@ -14,6 +15,7 @@ from drake_formation.sweep.dataset import DONE, FAILED, FAILURES
 from drake_formation.sweep.quantities import metric_names
 from drake_formation.sweep.run import DATASET, FIGURES, MISSING, Tally
 from drake_formation.sweep.run import Progress as Report
+from drake_formation.terminal.tables import table
 
 
 @contextmanager
@@ -54,16 +56,35 @@ def duration(seconds: float) -> str:
 
 def summary(dataset: xr.Dataset) -> Table:
     """Least, middle and largest value of each metric over all runs."""
-    table = Table("metric", "least", "median", "largest", "unit", title=f"{dataset.attrs['title']}, {_sizes(dataset)}")
-    for name in metric_names():
-        if name not in dataset:
-            continue
-        values = dataset[name]
-        known = bool(values.notnull().any())
-        numbers = [float(x) for x in (values.min(), values.median(), values.max())] if known else []
-        shown = [f"{x:.4g}" for x in numbers] or ["none"] * 3
-        table.add_row(values.attrs["long_name"], *shown, values.attrs["units"])
-    return table
+    title = f"{dataset.attrs['title']}, {_sizes(dataset)}"
+    shown = table("metric", "least", "median", "largest", "unit", title=title)
+    for name, numbers in _extremes(dataset).items():
+        about = dataset[name].attrs
+        shown.add_row(about["long_name"], *("none" if x is None else f"{x:.4g}" for x in numbers), about["units"])
+    return shown
+
+
+def told(dataset: xr.Dataset) -> dict[str, Any]:
+    """The same as plain data, and how many runs there are."""
+    status = dataset["status"]
+    extremes = {
+        name: dict(zip(("least", "median", "largest"), numbers, strict=True)) | {"unit": dataset[name].attrs["units"]}
+        for name, numbers in _extremes(dataset).items()
+    }
+    return {
+        "sweep": dataset.attrs["title"], "sizes": dict(status.sizes), "done": int((status == DONE).sum()),
+        "failed": int((status == FAILED).sum()), "metrics": extremes,
+    }  # fmt: skip
+
+
+def _extremes(dataset: xr.Dataset) -> dict[str, tuple[float | None, ...]]:
+    """Least, middle and largest value of each metric; None where no run has a value."""
+    measured = (name for name in metric_names() if name in dataset)
+    values = {name: dataset[name] for name in measured}
+    return {
+        name: tuple(float(x) for x in (its.min(), its.median(), its.max())) if its.notnull().any() else (None,) * 3
+        for name, its in values.items()
+    }
 
 
 def closing(dataset: xr.Dataset, folder: Path) -> tuple[str, int]:

@@ -163,12 +163,6 @@ def test_schema_is_json(cli):
     assert "springs" in json.loads(out)["properties"]
 
 
-def test_scenarios_lists_what_ships(cli):
-    status, out, _ = cli("scenarios")
-    assert status == 0
-    assert all(name in out for name in ("line", "quadrilateral", "octagon"))
-
-
 def test_validate_says_what_it_read(cli):
     status, out, _ = cli("validate", "quadrilateral")
     assert status == 0
@@ -208,13 +202,6 @@ def test_reproduce_refuses_a_cell_that_is_not_there(cli):
     status, _, err = cli("reproduce", "--cell", "table5:wood:0")
     assert status == 2
     assert "rubber, steel" in err
-
-
-def test_parts_are_listed_with_their_packages(cli):
-    status, out, _ = cli("parts")
-    assert status == 0
-    for word in ("robot", "hookean", "set_point", "ideal"):
-        assert word in out
 
 
 def test_validate_shows_each_robots_own_values(cli):

@@ -68,13 +68,14 @@ OUTS = [
     "x.nc", "CON",
 ]  # fmt: skip
 OPTIONS = {
-    "run": [["--engine", "blocks"], ["--engine", "nonsense"]],
-    "validate": [[]],
+    "run": [["--engine", "blocks"], ["--engine", "nonsense"], ["--json"], ["-q"], ["-v"]],
+    "validate": [["--json"], ["-q"], ["-q", "-v"]],
     "analyze": [
         ["--period", "0.1"], ["--damping-ratio", "1e-300"], ["--decay-rate", "nan"], ["--force-limit", "1e300"],
         ["--topology", "-1"], ["--damping-ratio", "x"],
     ],
     "graphviz": [["--depth", "2"], ["--depth", "0"], ["--depth", "99"]],
+    "show": [["--json"], ["-q"]],
     "sweep": [["--executor", "serial"]],
 }  # fmt: skip
 
@@ -97,12 +98,12 @@ def cases(seed: int) -> Iterator[Case]:
     number = 0
     while True:
         rng = random.Random(f"{seed}-{number}")
-        yield rng.choices([_scenario_case, _override_case, _out_case, _sweep_case], [5, 3, 2, 4])[0](rng)
+        yield rng.choices([_scenario_case, _override_case, _out_case, _sweep_case, _name_case], [5, 3, 2, 4, 1])[0](rng)
         number += 1
 
 
 def _scenario_case(rng: random.Random) -> Case:
-    command = rng.choices(["run", "validate", "analyze", "graphviz"], [6, 3, 1, 1])[0]
+    command = rng.choices(["run", "validate", "analyze", "graphviz", "show"], [6, 3, 1, 1, 1])[0]
     text = _written(rng, mutated(rng, scenario(rng)))
     return Case([command, "s.yaml", *_options(rng, command), *_output(command, "o")], {"s.yaml": text})
 
@@ -115,9 +116,9 @@ def _override_case(rng: random.Random) -> Case:
 
 
 def _out_case(rng: random.Random) -> Case:
-    command = rng.choices(["run", "sweep", "graphviz", "reproduce", "analyze"], [6, 3, 2, 2, 1])[0]
+    command = rng.choices(["run", "sweep", "graphviz", "show", "reproduce", "analyze"], [6, 3, 2, 1, 2, 1])[0]
     out = rng.choice(OUTS)
-    if command == "graphviz" and rng.random() < 0.7:
+    if command in ("graphviz", "show") and rng.random() < 0.7:
         out += rng.choice([".svg", ".dot"])
     files = {"s.yaml": json.dumps(SWEEP if command == "sweep" else SCENARIO)}
     source = ["--only", "table1"] if command == "reproduce" else ["s.yaml", *_options(rng, command)]
@@ -133,6 +134,15 @@ def _sweep_case(rng: random.Random) -> Case:
         sweep["trajectories"] = {"variables": ["position"], "every": 0.1}
     text = _written(rng, mutated(rng, sweep))
     return Case(["sweep", "s.yaml", "--executor", "serial", "--out", "o"], {"s.yaml": text})
+
+
+def _name_case(rng: random.Random) -> Case:
+    """A new scenario, which is written where its name says and so must not lead out of the folder, or a list."""
+    if rng.random() < 0.5:
+        name = rng.choice([out for out in OUTS if not out.startswith("/")])
+        return Case(["new", name, *rng.choice([[], ["--from", rng.choice(["line", "lime", "", "a/b"])]])])
+    what = rng.choice(["scenarios", "sweeps", "comparisons", "parts", "metrics", "", "part", "δ"])
+    return Case(["list", what, *rng.choice([[], ["mpc"], ["peak_force_n"], ["δ"], [""], ["--json"]])])
 
 
 def scenario(rng: random.Random) -> dict[str, Any]:
@@ -270,4 +280,5 @@ def _options(rng: random.Random, command: str) -> list[str]:
 def _output(command: str, out: str) -> list[str]:
     if command == "validate":
         return []
-    return ["-o", out if out != "o" else "o.svg"] if command == "graphviz" else ["--out", out]
+    drawn = command in ("graphviz", "show")
+    return ["-o", out if out != "o" else "o.svg"] if drawn else ["--out", out]

@@ -145,8 +145,10 @@ def warm_up() -> float:
     import drake_formation.cli.certificate_folder
     import drake_formation.cli.run_folder
     import drake_formation.paper.reproduce
+    import drake_formation.scenario.starter
     import drake_formation.sweep
     import drake_formation.viz.figures
+    import drake_formation.viz.sketch
     import drake_formation.viz.sweep_figures  # noqa: F401
 
     begin = time.perf_counter()

@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import drake_formation.scenario
 from drake_formation.scenario import (
     Scenario,
     ScenarioError,
@@ -48,14 +47,6 @@ def test_shipped_scenarios_load_by_name():
     assert {"line", "quadrilateral", "octagon"} <= shipped_scenarios().keys()
     for name in shipped_scenarios():
         assert load_scenario(name).name == name
-
-
-def test_a_wheel_carries_them_inside_the_package(tmp_path, monkeypatch):
-    package = tmp_path / "drake_formation"
-    (package / "diagrams").mkdir(parents=True)
-    (package / "diagrams" / "mine.yaml").touch()
-    monkeypatch.setattr(drake_formation.scenario.load, "__file__", str(package / "scenario" / "load.py"))
-    assert shipped_scenarios() == {"mine": package / "diagrams" / "mine.yaml"}
 
 
 def test_a_file_wins_over_a_name_and_a_folder_does_not(tmp_path, monkeypatch):

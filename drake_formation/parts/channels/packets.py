@@ -62,13 +62,13 @@ class Packets(Channel):
             default="uniform", description="how delays are distributed"
         )
         delays: Trace = Field(default=(), description="measured delays (s), packet by packet, over and over")
-        loss: Probability | None = Field(default=None, description="share of packets that are lost; chosen: 0")
+        loss: Probability | None = Field(default=None, description="share of packets that are lost (1); chosen: 0")
         burst: Annotated[float, Field(ge=1)] | None = Field(
             default=None,
-            description="mean number of packets in a bad time (Gilbert-Elliott); 1: independent losses",
+            description="mean number of packets (1) in a bad time (Gilbert-Elliott); 1: independent losses",
         )
-        burst_loss: Probability = Field(default=1.0, description="share of packets that are lost in a bad time")
-        losses: Trace = Field(default=(), description="measured losses, 1 lost and 0 not, packet by packet")
+        burst_loss: Probability = Field(default=1.0, description="share of packets that are lost in a bad time (1)")
+        losses: Trace = Field(default=(), description="measured losses (1), 1 lost and 0 not, packet by packet")
         quantum: NonNegative = Field(default=0.0, description="step to which what is sent is rounded (m, m/s); 0: none")
         clock_offset: float = Field(default=0.0, description="by how much the sender's clock is ahead (s)")
         clock_drift: float = Field(

@@ -22,12 +22,12 @@ class DistributedWeights(Weights):
 
     relative_cost: CostMatrix = Field(
         default=1.0,
-        description="Q₂, cost of the difference of two robots' errors, 4 x 4: a number times I, a diagonal or a "
-        "matrix, one for all robots; chosen: I",
+        description="Q₂ (1/m², s²/m²), cost of the difference of two robots' errors, 4 x 4: a number times I, a "
+        "diagonal or a matrix, one for all robots; chosen: I",
     )
     scale: Positive | None = Field(
         default=None,
-        description="a in M = a L, one for all robots; if not given, 1 where that is stable without springs, else "
+        description="a (1) in M = a L, one for all robots; if not given, 1 where that is stable without springs, else "
         "what the theorem asks for",
     )
 

@@ -10,10 +10,12 @@ class LocalWeights(Section):
     """Weights of an LQR about a place that moves with others."""
 
     Q: CostMatrix = Field(
-        default=1.0, description="state cost, 4 x 4: a number times I, a diagonal or a matrix; chosen: as the paper's"
+        default=1.0,
+        description="state cost (1/m², s²/m²), 4 x 4: a number times I, a diagonal or a matrix; chosen: as the paper's",
     )
     R: CostMatrix = Field(
-        default=1.0, description="input cost, 2 x 2: a number times I, a diagonal or a matrix; chosen: as the paper's"
+        default=1.0,
+        description="input cost (1/N²), 2 x 2: a number times I, a diagonal or a matrix; chosen: as the paper's",
     )
 
     @property

@@ -30,15 +30,16 @@ class Weights(Section):
     """
 
     Q: CostMatrix = Field(
-        default=1.0, description="cost of a robot's error, 4 x 4: a number times I, a diagonal or a matrix; chosen: I"
+        default=1.0,
+        description="cost of a robot's error (1/m², s²/m²), 4 x 4: a number times I, a diagonal or a matrix; chosen: I",
     )
     R: CostMatrix = Field(
-        default=1.0, description="cost of its force, 2 x 2: a number times I, a diagonal or a matrix; chosen: I"
+        default=1.0, description="cost of its force (1/N²), 2 x 2: a number times I, a diagonal or a matrix; chosen: I"
     )
     relative_cost: CostMatrix = Field(
         default=0.0,
-        description="Q₂, cost of the difference of two robots' errors, 4 x 4: a number times I, a diagonal or a "
-        "matrix, one for all robots; chosen: none",
+        description="Q₂ (1/m², s²/m²), cost of the difference of two robots' errors, 4 x 4: a number times I, a "
+        "diagonal or a matrix, one for all robots; chosen: none",
     )
 
 

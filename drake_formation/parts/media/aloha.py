@@ -27,7 +27,8 @@ class Aloha(SharedMedium):
 
         probability: Annotated[float, Field(gt=0, le=1)] | None = Field(
             default=None,
-            description="to send in a slot, halved after every failure in a row; chosen: 1 by the stations",
+            description="probability (1) to send in a slot, halved after every failure in a row; chosen: 1 by the "
+            "stations",
         )
         retries: Retries = Field(default=6, description="failures in a row after which it gives a packet up; chosen: 6")
 

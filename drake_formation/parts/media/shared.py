@@ -46,7 +46,10 @@ class Radio(Shared):
     needed: float = Field(default=10.0, description="power above the noise that a receiver needs (dB); chosen: 10")
     first_metre: float = Field(default=40.0, description="path loss at 1 m (dB); chosen: free space at 2.4 GHz")
     exponent: float = Field(
-        default=3.0, ge=1.0, le=10.0, description="by what power of the distance it grows; 2 in free space, chosen: 3"
+        default=3.0,
+        ge=1.0,
+        le=10.0,
+        description="by what power of the distance it grows (1); 2 in free space, chosen: 3",
     )
 
 

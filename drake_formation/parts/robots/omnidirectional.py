@@ -120,7 +120,7 @@ class Omnidirectional(Robot):
         heading_cost: HeadingCost = Field(
             default=(1.0, 1.0), description="costs of the heading's error (1/rad²) and of its rate (s²/rad²); chosen: 1"
         )
-        torque_cost: Positive = Field(default=1.0, description="cost of the torque (N⁻² m⁻²); chosen: 1")
+        torque_cost: Positive = Field(default=1.0, description="cost of the torque (1/(N² m²)); chosen: 1")
         wheel_angles: Angles = Field(
             default=(0.0, 120.0, 240.0),
             description="where each wheel stands β_k (deg), as seen from the centre, from the heading "

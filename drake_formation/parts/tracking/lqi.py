@@ -58,11 +58,11 @@ class Lqi(Regulator):
 
         Q: CostMatrix = Field(
             default=(1.0, 1.0, 1.0, 1.0, 0.01, 0.01),
-            description="cost of position, velocity and the position's integral, 6 x 6: a number times I, a diagonal "
-            "or a matrix; chosen: the paper's I, and 0.01 of the integral",
+            description="state cost (1/m², s²/m², 1/(m² s²)) of position, velocity and the position's integral, 6 x 6: "
+            "a number times I, a diagonal or a matrix; chosen: the paper's I, and 0.01 of the integral",
         )
         R: CostMatrix = Field(
-            default=1.0, description="input cost, 2 x 2: a number times I, a diagonal or a matrix; chosen: I"
+            default=1.0, description="input cost (1/N²), 2 x 2: a number times I, a diagonal or a matrix; chosen: I"
         )
         feed_forward: bool = Field(
             default=False, description="add m_i a_r, the force that the reference's acceleration takes; chosen: none"

@@ -114,10 +114,11 @@ class Lqr(Regulator):
         """Its weights."""
 
         Q: CostMatrix = Field(
-            default=1.0, description="state cost, 4 x 4: a number times I, a diagonal or a matrix; published: I"
+            default=1.0,
+            description="state cost (1/m², s²/m²), 4 x 4: a number times I, a diagonal or a matrix; published: I",
         )
         R: CostMatrix = Field(
-            default=1.0, description="input cost, 2 x 2: a number times I, a diagonal or a matrix; published: I"
+            default=1.0, description="input cost (1/N²), 2 x 2: a number times I, a diagonal or a matrix; published: I"
         )
         feed_forward: bool = Field(
             default=False, description="add m_i a_r, the force that the reference's acceleration takes; published: none"

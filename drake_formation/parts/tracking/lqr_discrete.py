@@ -58,10 +58,11 @@ class LqrDiscrete(Regulator):
 
         period: Period = Field(default=0.1, description="sampling period T (s), counted from time 0; chosen: 0.1")
         Q: CostMatrix = Field(
-            default=1.0, description="state cost, 4 x 4: a number times I, a diagonal or a matrix; as lqr's: I"
+            default=1.0,
+            description="state cost (1/m², s²/m²), 4 x 4: a number times I, a diagonal or a matrix; as lqr's: I",
         )
         R: CostMatrix = Field(
-            default=1.0, description="input cost, 2 x 2: a number times I, a diagonal or a matrix; as lqr's: I"
+            default=1.0, description="input cost (1/N²), 2 x 2: a number times I, a diagonal or a matrix; as lqr's: I"
         )
         feed_forward: bool = Field(
             default=False, description="add m_i a_r, the force that the reference's acceleration takes; chosen: none"

@@ -16,6 +16,7 @@ help:
 	@echo "make explore    try the laws on new examples; MINUTES=10 by default"
 	@echo "make fuzz       try mutated commands, and count what came of them; MINUTES=10 SEED=7 for others"
 	@echo "make check      lint, types and tests"
+	@echo "make notebooks  run the notebooks from top to bottom"
 	@echo "make diagrams   export the pictures and schemas in diagrams/ anew"
 	@echo "make reproduce  rerun the paper's study into out/paper"
 	@echo "make bench      measure speed beside the peers, and write tests/benchmarks/README.md"
@@ -43,6 +44,9 @@ lint: $(VENV)/installed-dev
 
 types: $(VENV)/installed-dev
 	$(BIN)/mypy
+
+notebooks: $(VENV)/installed-dev
+	$(BIN)/python -m pytest tests/notebooks $(PYTEST)
 
 diagrams: $(VENV)/installed-dev
 	for name in line quadrilateral octagon s_curve shared-medium; do \

@@ -78,7 +78,7 @@ def set_parameters(diagram: Diagram, context: Context, scenario: Scenario) -> No
 
     Args:
         diagram: from :func:`drake_formation.build_diagram`.
-        context: a Context of that diagram.
+        context: a Context of that diagram; where it is part of another diagram, the Context of the whole.
         scenario: the scenario to take the numbers from.
 
     Raises:

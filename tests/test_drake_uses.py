@@ -119,6 +119,22 @@ def test_set_parameters_without_a_rebuild(scenario):
     np.testing.assert_array_equal(advanced(diagram, 2.0, context), advanced(build_diagram(other), 2.0))
 
 
+def test_set_parameters_inside_another_diagram_and_between_steps(scenario):
+    other = with_overrides(scenario, {"consensus.delta": 40.0})
+    alone = build_diagram(scenario)
+    context = alone.CreateDefaultContext()
+    advanced(alone, 1.5, context)
+    set_parameters(alone, context, other)
+    builder = DiagramBuilder()
+    formation = builder.AddSystem(build_diagram(scenario))
+    simulator = Simulator(builder.Build())
+    simulator.AdvanceTo(1.5)
+    set_parameters(formation, simulator.get_mutable_context(), other)
+    simulator.AdvanceTo(2.0)
+    np.testing.assert_allclose(state(simulator.get_context()), advanced(alone, 2.0, context), rtol=0, atol=1e-4)
+    assert np.abs(state(simulator.get_context()) - advanced(build_diagram(scenario), 2.0)).max() > 1e-2
+
+
 def test_clones_go_their_own_ways(scenario):
     diagram = build_diagram(scenario)
     simulator = Simulator(diagram)

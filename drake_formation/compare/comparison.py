@@ -1,8 +1,9 @@
 """A comparison: one scenario under several laws, in several cases, from several starts."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from drake_formation.compare.schema import SECTIONS, ComparisonFile, Variant
 from drake_formation.config.errors import Fault, ScenarioError
@@ -11,7 +12,7 @@ from drake_formation.scenario.load import find_file
 from drake_formation.scenario.source import Document, parse, read_text
 from drake_formation.scenario.validate import validate
 from drake_formation.shipped import shipped
-from drake_formation.sweep.base import base_document, with_values
+from drake_formation.sweep.base import base_document, mapped_document, with_values
 from drake_formation.sweep.faults import parsed
 from drake_formation.sweep.limits import value_faults
 
@@ -57,23 +58,27 @@ class Comparison:
     runs: tuple[Run, ...]
 
 
-def load_comparison(source: str | Path) -> Comparison:
+def load_comparison(source: str | Path | Mapping[str, Any]) -> Comparison:
     """Load a comparison; every run of it is checked before any is made.
 
     Args:
-        source: a file, or the name of a shipped comparison such as ``coordination``.
+        source: a file, the name of a shipped comparison such as ``coordination``, or what would stand in a file as a
+            mapping; ``scenario`` may then be a Scenario.
 
     Raises:
         ScenarioError: with file and line of what is wrong.
     """
-    path = find_file(source, shipped_comparisons(), "comparison")
-    document = parse(read_text(path), str(path))
+    if isinstance(source, Mapping):
+        document, folder = mapped_document("the comparison", source), Path()
+    else:
+        path = find_file(source, shipped_comparisons(), "comparison")
+        document, folder = parse(read_text(path), str(path)), path.parent
     if faults := list(value_faults(document.data)):
         raise document.attributed(faults)
     model = parsed(document, ComparisonFile, SECTIONS)
     if faults := [*_doubles(model), *_overlaps(model), *_size_faults(model)]:
         raise document.attributed(faults)
-    base = base_document(document, model.scenario, model.set, path.parent)
+    base = base_document(document, model.scenario, model.set, folder)
     runs = tuple(_runs(document, model, base))
     laws, cases = (tuple(variant.name for variant in variants) for variants in (model.laws, model.cases))
     return Comparison(model.name, model.description, laws, cases, runs)

@@ -1,4 +1,4 @@
-"""Running a comparison, one process a processor."""
+"""Running a comparison, one process a processor where others know its parts."""
 
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Future, wait
@@ -9,6 +9,7 @@ import numpy as np
 
 from drake_formation.compare.comparison import Comparison, Run
 from drake_formation.measuring.metric import Value
+from drake_formation.sources import SESSION
 from drake_formation.vectors import length
 
 if TYPE_CHECKING:
@@ -46,6 +47,8 @@ def run_comparison(
 ) -> list[Outcome]:
     """Run a comparison; a run that fails is an outcome too.
 
+    Where a part was registered in this session, as a notebook does, all is run in this process: no other knows it.
+
     Args:
         comparison: from :func:`drake_formation.compare.load_comparison`.
         workers: number of processes; that of processors if not given.
@@ -54,6 +57,28 @@ def run_comparison(
     Returns:
         The outcomes in the order of the comparison's runs.
     """
+    tell = progress or (lambda _done, _total: None)
+    here = any(is_of_this_session(run) for run in comparison.runs)
+    return _run_here(comparison, tell) if here else _run_in_processes(comparison, workers, tell)
+
+
+def is_of_this_session(run: Run) -> bool:
+    """Whether a part of a run was registered in this session."""
+    from drake_formation.scenario import resolve
+
+    return any(part.distribution == SESSION for parts in resolve(run.scenario).parts.values() for part in parts)
+
+
+def _run_here(comparison: Comparison, tell: Callable[[int, int], None]) -> list[Outcome]:
+    outcomes: list[Outcome] = []
+    tell(0, len(comparison.runs))
+    for run in comparison.runs:
+        outcomes.append(run_one(run))
+        tell(len(outcomes), len(comparison.runs))
+    return outcomes
+
+
+def _run_in_processes(comparison: Comparison, workers: int | None, tell: Callable[[int, int], None]) -> list[Outcome]:
     from drake_formation.sweep.executors import processors
     from drake_formation.sweep.processes import Processes
 
@@ -63,8 +88,7 @@ def run_comparison(
         futures: list[Future[Outcome]] = [processes.call(run_one, run) for run in comparison.runs]
         pending: set[Future[Outcome]] = set(futures)
         while pending:
-            if progress:
-                progress(total - len(pending), total)
+            tell(total - len(pending), total)
             _, pending = wait(pending, timeout=0.5, return_when=FIRST_COMPLETED)
         return [future.result() for future in futures]
 

@@ -271,11 +271,16 @@ class Scenario(Section):
     )
     simulator: Simulation = Field(default=Simulation(), description="how accurately all is integrated")
 
+    @property
+    def speaks_of_springs(self) -> bool:
+        """Whether it says anything of them; an empty section does not."""
+        return "springs" in self.model_fields_set and bool(self.springs.model_fields_set)
+
     @model_serializer(mode="wrap")
     def _as_it_may_be_written(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         """Without springs where the object is none."""
         written: dict[str, Any] = handler(self)
-        if self.object.kind != SPRINGS and "springs" not in self.model_fields_set:
+        if self.object.kind != SPRINGS and not self.speaks_of_springs:
             written.pop("springs", None)
         return written
 

@@ -1,5 +1,6 @@
 """The base scenario of a file of many runs, with the file's own values set in it."""
 
+import json
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -7,9 +8,28 @@ from typing import Any
 
 from drake_formation.config.errors import Fault, ScenarioError, nearest, shown
 from drake_formation.scenario import shipped_scenarios
-from drake_formation.scenario.overrides import apply
+from drake_formation.scenario.overrides import apply, plain
 from drake_formation.scenario.source import Document, read
 from drake_formation.sweep.limits import value_faults
+
+
+def mapped_document(name: str, source: Mapping[str, Any]) -> Document:
+    """What stands in a mapping from Python, in place of a file of many runs.
+
+    Args:
+        name: what faults call it.
+        source: it may hold anything, scenarios too.
+
+    Raises:
+        ScenarioError: it is not plain data.
+    """
+    document = Document(name, {})
+    try:
+        data = plain(source)
+        json.dumps(data, default=str)  # checks the keys, and that nothing contains itself
+    except (RecursionError, TypeError, ValueError) as error:
+        raise document.attributed([Fault((), f"not plain data: {error}")]) from error
+    return replace(document, data=data)
 
 
 def base_document(

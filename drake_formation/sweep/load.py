@@ -1,19 +1,17 @@
 """Loading sweeps: the shipped ones by name, others from files or mappings; what is wrong is found before any run."""
 
-import json
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from drake_formation.scenario import Fault, ScenarioError
 from drake_formation.scenario.load import find_file
-from drake_formation.scenario.overrides import apply, plain
+from drake_formation.scenario.overrides import apply
 from drake_formation.scenario.source import Document, parse, read_text
 from drake_formation.scenario.validate import validate
 from drake_formation.shipped import shipped
 from drake_formation.sweep.axes import Axis, resolve
-from drake_formation.sweep.base import base_document, placed
+from drake_formation.sweep.base import base_document, mapped_document, placed
 from drake_formation.sweep.coordinates import name_faults
 from drake_formation.sweep.definition import Sweep, probes
 from drake_formation.sweep.faults import parsed
@@ -39,7 +37,7 @@ def load_sweep(source: str | Path | Mapping[str, Any]) -> Sweep:
         ScenarioError: with all faults found, each with file and line.
     """
     if isinstance(source, Mapping):
-        document, folder, text = _document(source), Path(), ""
+        document, folder, text = mapped_document("the sweep", source), Path(), ""
     else:
         path = find_file(source, shipped_sweeps(), "sweep")
         text, folder = read_text(path), path.parent
@@ -59,17 +57,6 @@ def load_sweep(source: str | Path | Mapping[str, Any]) -> Sweep:
 def shipped_sweeps() -> dict[str, Path]:
     """Files of the sweeps that come with the package, by name."""
     return shipped("sweep")
-
-
-def _document(source: Mapping[str, Any]) -> Document:
-    """What stands in a mapping from Python, which may hold anything."""
-    document = Document("the sweep", {})
-    try:
-        data = plain(source)
-        json.dumps(data, default=str)  # checks the keys, and that nothing contains itself
-    except (RecursionError, TypeError, ValueError) as error:
-        raise document.attributed([Fault((), f"not plain data: {error}")]) from error
-    return replace(document, data=data)
 
 
 def _axes(document: Document, model: SweepFile) -> tuple[Axis, ...]:

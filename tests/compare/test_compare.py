@@ -9,11 +9,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from matplotlib.image import imread
+from ruamel.yaml import YAML
 
 from drake_formation import ScenarioError, load_scenario, metrics, simulate
 from drake_formation.compare import load_comparison, rows, run_comparison, shipped_comparisons
 from drake_formation.compare.run import run_one, traffic
 from drake_formation.compare.table import COLUMNS, as_csv, latex, markdown
+from drake_formation.parts import part, register, registry
+from drake_formation.parts.tracking.lqr import Lqr
 from drake_formation.scenario import resolve
 
 FILE = """\
@@ -84,6 +87,38 @@ def test_a_case_changes_what_a_law_has_put_in_place(written):
     run = load_comparison(written(text)).runs[-1]
     assert resolve(run.scenario).parts["avoidance"][0].kind == "rotational"
     assert resolve(run.scenario).obstacles.discs[:, :2].tolist() == [[9.0, 9.0]]
+
+
+def test_a_mapping_says_what_a_file_says(written):
+    mapping = YAML(typ="safe").load(FILE) | {"scenario": load_scenario("line")}
+    assert load_comparison(mapping) == load_comparison(written())
+    del mapping["laws"]
+    with pytest.raises(ScenarioError, match="the comparison: laws: missing"):
+        load_comparison(mapping)
+
+
+@pytest.fixture
+def registered():
+    """A part that only this process knows."""
+
+    class Halved(Lqr):
+        def gain(self, mass):
+            return super().gain(mass) / 2
+
+    yield register(part("tracking", kind="halved")(Halved))
+    del registry._parts["tracking"]["halved"]
+    registry._told()
+
+
+@pytest.mark.usefixtures("registered")
+def test_a_part_of_this_session_is_compared(written):
+    laws = [{"name": "halved", "set": {"tracking": {"kind": "halved"}}}]
+    short = {"aggregation.duration": 0.0, "transport.duration": 2.0, "robots.start": {"centre": [2.5, 3.5]}}
+    told = []
+    comparison = load_comparison({"name": "mine", "scenario": "line", "set": short, "laws": laws})
+    (outcome,) = run_comparison(comparison, progress=lambda *done: told.append(done))
+    assert outcome.metrics["peak_force_n"] == pytest.approx(22.5 / 2)
+    assert told == [(0, 1), (1, 1)]
 
 
 def test_channels_count_where_they_are_read(small):

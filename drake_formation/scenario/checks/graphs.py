@@ -20,9 +20,9 @@ def check(scenario: Scenario) -> Iterator[Fault]:
 def _springs(scenario: Scenario) -> Iterator[Fault]:
     springs, kind = scenario.springs, scenario.object.kind
     if kind != SPRINGS:
-        if "springs" in scenario.model_fields_set:
+        if scenario.speaks_of_springs:
             message = f"the carried object is {kind!r} and has no springs"
-            yield Fault(("springs",), message, allowed="nothing here, or object.kind springs")
+            yield Fault(("springs",), message, allowed="nothing here ({}), or object.kind springs")
         return
     faults = list(_edges(("springs", "graph"), springs.graph, derive.robot_count(scenario.formation)))
     yield from faults

@@ -171,6 +171,13 @@ def test_springs_beside_another_object_are_refused_at_their_line(kind):
 
 
 @each_kind
+def test_another_object_takes_the_place_of_springs_that_are_emptied(kind):
+    line = load_scenario("quadrilateral", overrides=["springs={}", f"object={kind}"])
+    assert "springs:" not in to_yaml(line)
+    assert validate(parse(to_yaml(line), "again.yaml")) == line
+
+
+@each_kind
 def test_it_is_not_certified(kind):
     with pytest.raises(IllPosedError, match=r"the carried object is '(rigid|lattice)'; what is certified are springs"):
         linearize(carried(kind))

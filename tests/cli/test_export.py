@@ -4,13 +4,13 @@ import errno
 from pathlib import Path
 
 from drake_formation.exporting import csv_file
-from drake_formation.viz import run_figures
+from drake_formation.viz import figures
 
 SHORT = ["--set", "aggregation.duration=1", "--set", "transport.duration=2"]
 
 
 def test_a_run_has_a_table_and_its_folder_is_exported(cli, monkeypatch):
-    monkeypatch.setattr(run_figures, "write_figures", lambda *_: {})
+    monkeypatch.setattr(figures, "write_figures", lambda *_: {})
     status, out, _ = cli("run", "line", *SHORT, "--out", "run", "--csv", "run.csv")
     assert status == 0
     assert "Table in run.csv." in out
@@ -30,7 +30,7 @@ def test_a_disk_that_is_full_is_named_and_leaves_nothing(cli, monkeypatch):
     def full(*_):
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(run_figures, "write_figures", lambda *_: {})
+    monkeypatch.setattr(figures, "write_figures", lambda *_: {})
     monkeypatch.setattr(csv_file, "write_csv", full)
     status, _, err = cli("run", "line", *SHORT, "--out", "run", "--csv", "run.csv")
     assert status == 2

@@ -105,7 +105,7 @@ def consensus_error(results: Results, axes: Axes | None = None, *, whole: bool =
 def spring_lengths(results: Results, axes: Axes | None = None, *, whole: bool = False, width: Width = "page") -> Axes:
     """Elongation of every spring while it holds its robots (paper, Fig. 10, about the length at rest).
 
-    Drawn as :func:`tracking_error` is, but that the line goes along the middle of a band.
+    Drawn as :func:`tracking_error` is, but that a band has lines along both edges, and decades both signs.
     """
     return _one(ELONGATION, results, axes, whole, width)
 

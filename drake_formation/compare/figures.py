@@ -12,10 +12,11 @@ from matplotlib.lines import Line2D
 from drake_formation.compare.comparison import Comparison
 from drake_formation.compare.run import Outcome
 from drake_formation.compare.table import Row
-from drake_formation.viz.figures.histories import CONSENSUS_ERROR, draw_lines, largest
+from drake_formation.viz.figures.histories import draw_lines, largest
 from drake_formation.viz.figures.looks import Look, looks_of
 from drake_formation.viz.figures.panels import LINE, TITLE, Width, drawing, height, resize
 from drake_formation.viz.figures.plane import lay_over, plane_height
+from drake_formation.viz.figures.quantities import CONSENSUS_ERROR
 from drake_formation.viz.style import Drawn, draw_each, figure_of
 
 ERROR, EFFORT = "consensus_error_m", "rms_force_n"

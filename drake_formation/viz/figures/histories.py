@@ -1,6 +1,6 @@
 """What changed over time: errors, spring lengths and forces, from the hand-off on."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,78 +8,20 @@ import xarray as xr
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from drake_formation.vectors import length
 from drake_formation.viz.figures.envelope import draw_band
 from drake_formation.viz.figures.events import mark_events
 from drake_formation.viz.figures.looks import Look, looks_of, robot_looks, spring_looks
 from drake_formation.viz.figures.panels import Width, drawing, height, legend
+from drake_formation.viz.figures.quantities import CONSENSUS_ERROR, ELONGATION, FORCES, TRACKING_ERROR, Quantity
 from drake_formation.viz.figures.results import Results, labelled, transport
 from drake_formation.viz.figures.scales import scale
 
 Array = NDArray[np.float64]
 
-CENTIMETRES = 100.0
 OPACITY = 0.7
 """Of all bands together, about; what is behind them is still seen."""
 MOST_SPRINGS = 10
 """More springs than this are not named one by one."""
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """What is drawn over time.
-
-    Attributes:
-        subject: its name.
-        symbol: as the paper writes it.
-        unit: in which it is drawn.
-        of: from a result to the quantity over ``time`` and ``over``, in that unit.
-        over: what has one each, ``robot`` or ``spring``.
-        signed: whether it is below zero too.
-    """
-
-    subject: str
-    symbol: str
-    unit: str
-    of: Callable[[xr.Dataset], xr.DataArray]
-    over: str = "robot"
-    signed: bool = False
-
-    @property
-    def label(self) -> str:
-        """Of an axis."""
-        return f"{self.subject}\n{self.symbol} ({self.unit})"
-
-    @property
-    def largest_label(self) -> str:
-        """Of an axis that shows the largest one."""
-        symbol = f"$|${self.symbol}$|$" if self.signed else self.symbol
-        return f"largest {self.subject}\n{symbol} ({self.unit})"
-
-
-def _elongation(result: xr.Dataset) -> xr.DataArray:
-    """Of the springs while they hold the robots (cm)."""
-    acting = (result["phase"] == 1) & (result["acting"] == 1 if "acting" in result else True)
-    return CENTIMETRES * (result["spring_length"] - result["rest_length"]).where(acting)
-
-
-def _force(subject: str, symbol: str, name: str) -> Quantity:
-    return Quantity(subject, symbol, "N", lambda result: length(result[name]))
-
-
-TRACKING_ERROR = Quantity(
-    "tracking error", r"$\|\varepsilon_i\|$", "cm", lambda result: CENTIMETRES * length(result["deviation"])
-)
-CONSENSUS_ERROR = Quantity(
-    "consensus error", r"$\|e_i\|$", "cm", lambda result: CENTIMETRES * length(result["consensus_error"])
-)
-ELONGATION = Quantity("spring elongation", "$d_{ij} - r_{ij}$", "cm", _elongation, "spring", signed=True)
-FORCES = (
-    _force("control force", r"$\|u_i\|$", "control_force"),
-    _force("local LQR force", r"$\|u_{l,i}\|$", "tracking_force"),
-    _force("consensus force", r"$\|u_{g,i}\|$", "consensus_force"),
-    _force("avoidance force", r"$\|u_{\mathrm{apf},i}\|$", "avoidance_force"),
-)
 
 
 def tracking_error(results: Results, axes: Axes | None = None, *, whole: bool = False, width: Width = "page") -> Axes:
@@ -105,7 +47,7 @@ def consensus_error(results: Results, axes: Axes | None = None, *, whole: bool =
 def spring_lengths(results: Results, axes: Axes | None = None, *, whole: bool = False, width: Width = "page") -> Axes:
     """Elongation of every spring while it holds its robots (paper, Fig. 10, about the length at rest).
 
-    Drawn as :func:`tracking_error` is, but that the line goes along the middle of a band.
+    Drawn as :func:`tracking_error` is, but that a band has lines along both edges, and decades both signs.
     """
     return _one(ELONGATION, results, axes, whole, width)
 

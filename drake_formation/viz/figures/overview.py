@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from drake_formation.viz.ages import ages
 from drake_formation.viz.figures.envelope import draw_band
-from drake_formation.viz.figures.histories import CONSENSUS_ERROR, draw_quantity
+from drake_formation.viz.figures.histories import draw_quantity
 from drake_formation.viz.figures.looks import looks_of
 from drake_formation.viz.figures.panels import Width, drawing, height, is_narrow, legend, resize
 from drake_formation.viz.figures.plane import draw_transport, lay_over, plane_height
+from drake_formation.viz.figures.quantities import CONSENSUS_ERROR
 from drake_formation.viz.figures.results import Results, labelled, transport
 from drake_formation.viz.figures.scales import scale
 

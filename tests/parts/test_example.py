@@ -108,14 +108,14 @@ def test_its_parts_are_swept_in_workers(tmp_path):
 
 @pytest.mark.usefixtures("installed")
 def test_its_metric_is_listed_with_what_brings_it():
-    result = ran("-m", "drake_formation", "metrics")
+    result = ran("-m", "drake_formation", "list", "metrics")
     assert "mean_consensus_error_m" in result.stdout
     assert "formation-extras" in result.stdout
 
 
 def test_a_metric_that_cannot_be_used_is_told_of_and_costs_no_other(installed):
     announce(installed, "metrics", "consensus = drake_formation.measuring.consensus_error:consensus_error")
-    result = ran("-m", "drake_formation", "metrics")
+    result = ran("-m", "drake_formation", "list", "metrics")
     assert result.returncode == 0
     assert "metric 'consensus' of formation-extras cannot be used: drake-formation has a metric" in result.stderr
     assert "mean_consensus_error_m" in result.stdout

@@ -3,6 +3,7 @@
 import webbrowser
 from _thread import interrupt_main
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from time import sleep
 
 import numpy as np
@@ -10,9 +11,10 @@ import pytest
 from browsing import opened, page_address
 
 from drake_formation import load_scenario, simulate
+from drake_formation.simulation import PreparedRun
 from drake_formation.viz.figures import robot_colours
 from drake_formation.viz.playback import Playback
-from drake_formation.viz.view import write_page
+from drake_formation.viz.view import session, write_page
 from drake_formation.viz.view.flights import drawn_packets
 from drake_formation.viz.view.frames import TOLERANCE
 from drake_formation.viz.view.knobs import KNOBS
@@ -163,6 +165,8 @@ def test_sliders_act_on_the_next_run(view, cli, monkeypatch):
     simulate(load_scenario("line", overrides=SHORT), engine="blocks").to_netcdf("result.nc")
     other = simulate(load_scenario("line", overrides=SHORT | {"consensus.delta": 400.0}), engine="blocks")
     expected = other.position.interp(time=1.0).sel(robot=1)
+    blocks = partial(PreparedRun, engine="blocks")  # compiling the line takes longer than all else here
+    monkeypatch.setattr(session, "PreparedRun", lambda scenario, **_: blocks(scenario))
     with ThreadPoolExecutor() as aside:
         at_work = []
         monkeypatch.setattr(webbrowser, "open", lambda url: at_work.append(aside.submit(slid, view, url, expected)))

@@ -8,7 +8,7 @@ BENCH ?= .venv-bench
 # pip installs from outside, so that the environment needs no pip of its own (Debian ships venv without it).
 PIP := $(PYTHON) -m pip --python $(BIN)/python --disable-pip-version-check
 
-.PHONY: help demo test explore fuzz check lint types notebooks diagrams reproduce bench clean
+.PHONY: help demo test explore fuzz check lint types notebooks docs diagrams reproduce bench clean
 
 help:
 	@echo "make demo       run the paper's line formation and say where the pictures are"
@@ -16,6 +16,7 @@ help:
 	@echo "make explore    try the laws on new examples; MINUTES=10 by default"
 	@echo "make fuzz       try mutated commands, and count what came of them; MINUTES=10 SEED=7 for others"
 	@echo "make check      lint, types and tests"
+	@echo "make docs       build the documentation into out/docs/site; every warning is an error"
 	@echo "make diagrams   export the pictures in diagrams/ anew"
 	@echo "make reproduce  rerun the paper's study into out/paper"
 	@echo "make bench      measure speed beside the peers, and write tests/benchmarks/README.md"
@@ -43,6 +44,9 @@ lint: $(VENV)/installed-dev
 
 types: $(VENV)/installed-dev
 	$(BIN)/mypy
+
+docs: $(VENV)/installed-dev
+	$(BIN)/python docs/build.py
 
 diagrams: $(VENV)/installed-dev
 	for name in line quadrilateral octagon s_curve shared-medium; do \

@@ -1,4 +1,4 @@
-// Browsers start no Worker from a file: the search's script runs in a hidden frame instead, when pages are read from disk.
+// Browsers start no Worker from a file. Where pages are read from disk, the search's script runs in a hidden frame instead.
 if (location.protocol === "file:") {
   window.Worker = class {
     constructor(address) {
@@ -6,19 +6,24 @@ if (location.protocol === "file:") {
       this.frame.hidden = true;
       document.documentElement.append(this.frame);
       const inside = this.frame.contentWindow;
-      inside.postMessage = (data) => this.onmessage?.({ data });
+      inside.postMessage = (message) => this.#later(() => this.onmessage, message);
       const script = inside.document.createElement("script");
       this.ready = new Promise((resolve) => (script.onload = resolve));
       script.onerror = (event) => this.onerror?.(event);
       script.src = address;
       inside.document.body.append(script);
     }
-    async postMessage(data) {
+    async postMessage(message) {
       await this.ready;
-      this.frame.contentWindow?.onmessage({ data });
+      this.#later(() => this.frame.contentWindow?.onmessage, message);
     }
     terminate() {
       this.frame.remove();
+    }
+    // A copy, and not before what runs now has ended: as between a page and a Worker.
+    #later(listener, message) {
+      const data = structuredClone(message);
+      setTimeout(() => listener()?.({ data }));
     }
   };
 }

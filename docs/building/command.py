@@ -23,5 +23,6 @@ def command_page() -> str:
 
 
 def _help(command: Any, name: str, parent: Any) -> str:
-    text = command.get_help(command.context_class(command, info_name=name, parent=parent, terminal_width=WIDTH, max_content_width=WIDTH))
+    widths = {"terminal_width": WIDTH, "max_content_width": WIDTH}
+    text = command.get_help(command.context_class(command, info_name=name, parent=parent, **widths))
     return f"```text\n{text.rstrip()}\n```"

@@ -3,6 +3,19 @@
 import json
 from pathlib import Path
 
+INTRODUCTION = """# Notebooks
+
+Each is a file in `notebooks/`: `pip install 'drake-formation[notebook]'`, and open it in Jupyter. Here are their text
+and code, without results.
+"""
+
+
+def notebooks_page(files: list[Path]) -> str:
+    """A list of notebooks by their titles."""
+    titles = [notebook_page(file).partition("\n")[0].lstrip("# ") for file in files]
+    entries = [f"- [{title}](../notebooks/{file.name})" for title, file in zip(titles, files, strict=True)]
+    return INTRODUCTION + "\n" + "\n".join(entries) + "\n"
+
 
 def notebook_page(file: Path) -> str:
     """A notebook in Markdown."""

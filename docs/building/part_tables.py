@@ -32,10 +32,11 @@ def parts_page(root: Path) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def metrics_page(root: Path) -> str:
+def metrics_page() -> str:
     """What is measured of every run."""
     rows = [
-        (f"`{name}`", metric.title, metric.unit, "one a robot" if metric.each else "") for name, metric in known().items()
+        (f"`{name}`", metric.title, metric.unit, "one a robot" if metric.each else "")
+        for name, metric in known().items()
     ]
     return (
         "# The metrics\n\nEach is of the transport, between the samples too, and a key of `metrics.json`, of "

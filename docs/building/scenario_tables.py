@@ -13,8 +13,9 @@ HEADING = ("field", "value", "default", "meaning")
 INTRODUCTION = """# The scenario
 
 Every field that a scenario may have, from the schema that checks it (`drake-formation schema` prints it for editors).
-A field marked *each* is one value for all, a list, or a mapping such as `{1: 50.0, default: 40.0}`. Which kind a section
-is of is said by `kind` (by `law` for springs); what each kind is, and where it comes from, is in [the parts](parts.md).
+A field marked *each* is one value for all, a list, or a mapping such as `{1: 50.0, default: 40.0}`. Which kind a
+section is of is said by `kind` (by `law` for springs); what each kind is, and where it comes from, is in
+[the parts](parts.md).
 """
 BOUNDS = {"exclusiveMinimum": "> ", "minimum": "≥ ", "exclusiveMaximum": "< ", "maximum": "≤ "}
 
@@ -103,7 +104,9 @@ def _choice_text(choices: list[Schema]) -> str:
     first = choices[0]
     if any(choice.get("additionalProperties") == first or choice.get("items") == first for choice in choices[1:]):
         return f"{value_text(first)}, *each*"
-    texts = [value_text(choice) for choice in choices if not choice.get("$ref", "").rpartition("/")[2].startswith("Mixed")]
+    texts = [
+        value_text(choice) for choice in choices if not choice.get("$ref", "").rpartition("/")[2].startswith("Mixed")
+    ]
     return " or ".join(dict.fromkeys(texts))
 
 

@@ -10,10 +10,11 @@ from building.claims import claims_page
 from building.command import command_page
 from building.formulas import draw_formulas
 from building.links import Links
-from building.notebooks import notebook_page
+from building.notebooks import notebook_page, notebooks_page
 from building.part_tables import metrics_page, parts_page
 from building.scenario_tables import scenario_page
 from building.sources import source_page
+from drake_formation.analysis import NOT_COVERED
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -25,8 +26,11 @@ class BuildError(RuntimeError):
     """Zensical found something wrong, and has said what."""
 
 
-def build() -> Path:
+def build(out: Path = OUT) -> Path:
     """Build the site.
+
+    Args:
+        out: where; what is there goes.
 
     Returns:
         Its first page.
@@ -35,15 +39,16 @@ def build() -> Path:
         BrokenLinkError: a link of a page leads nowhere in the project.
         BuildError: Zensical has warned.
     """
-    shutil.rmtree(OUT, ignore_errors=True)
-    gather(OUT / "pages")
-    shutil.copyfile(DOCS / CONFIGURATION, OUT / CONFIGURATION)
+    shutil.rmtree(out, ignore_errors=True)
+    gather(out / "pages")
+    _write(out / "not_covered.md", "".join(f"- {words}\n" for words in NOT_COVERED))
+    _write(out / CONFIGURATION, (DOCS / CONFIGURATION).read_text(encoding="utf-8").replace("ROOT", ROOT.as_posix()))
     program = Path(sys.executable).with_name("zensical")
-    if subprocess.run([program, "build", "--strict", "--clean"], cwd=OUT, check=False).returncode:
+    if subprocess.run([program, "build", "--strict", "--clean"], cwd=out, check=False).returncode:
         raise BuildError("the site is not built: Zensical warned of the above")
-    for page in sorted((OUT / "site").rglob("*.html")):
+    for page in sorted((out / "site").rglob("*.html")):
         page.write_text(draw_formulas(page.read_text(encoding="utf-8")), encoding="utf-8")
-    return OUT / "site" / "index.html"
+    return out / "site" / "index.html"
 
 
 def gather(folder: Path) -> None:
@@ -74,16 +79,18 @@ def written_pages() -> dict[Path, tuple[PurePosixPath, str]]:
 
 def generated_pages() -> dict[Path, tuple[PurePosixPath, str]]:
     """The pages made of the code: page and text by the file in ``docs/`` that they stand for."""
+    notebooks = sorted((ROOT / "notebooks").glob("*.ipynb"))
     pages = {
+        "notebooks.md": notebooks_page(notebooks),
         "claims.md": claims_page(ROOT),
         "reference/scenario.md": scenario_page(),
         "reference/parts.md": parts_page(ROOT),
-        "reference/metrics.md": metrics_page(ROOT),
+        "reference/metrics.md": metrics_page(),
         "reference/command.md": command_page(),
         **{f"reference/{name}.md": text for name, text in api_pages().items()},
     }
     made = {DOCS / name: (PurePosixPath(name), text) for name, text in pages.items()}
-    for file in sorted((ROOT / "notebooks").glob("*.ipynb")):
+    for file in notebooks:
         made[file] = PurePosixPath("notebooks", f"{file.stem}.md"), notebook_page(file)
     return made
 

@@ -8,7 +8,7 @@ import typer
 from drake_formation.cli.app import app
 
 NAME = "drake-formation"
-WIDTH = 84
+WIDTH = 96
 """Characters that a page shows in a line of code."""
 
 

@@ -3,6 +3,7 @@
 from inspect import getsourcefile
 from pathlib import Path
 
+from building.roles import in_markdown
 from drake_formation.markdown import markdown_table
 from drake_formation.measuring.registry import known
 from drake_formation.parts import kinds
@@ -51,11 +52,11 @@ def _file(part: type, root: Path) -> str:
 
 
 def _meaning(part: type) -> str:
-    return (part.__doc__ or "").partition("\n\n")[0].replace("\n", " ")
+    return in_markdown((part.__doc__ or "").partition("\n\n")[0].replace("\n", " "))
 
 
 def _law(part: type) -> str:
-    return " ".join((part.__doc__ or "").partition("\n\n")[2].split())
+    return in_markdown(" ".join((part.__doc__ or "").partition("\n\n")[2].split()))
 
 
 def _ports(verb: str, ports: tuple[Port, ...]) -> list[str]:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
+from building.roles import in_markdown
 from drake_formation.markdown import markdown_table
 from drake_formation.parts.roles import ROLES
 from drake_formation.scenario import json_schema
@@ -52,7 +53,7 @@ def _title(name: str, section: Schema) -> str:
 
 
 def _first_line(section: Schema) -> str:
-    return str(section.get("description", "")).split("\n\n")[0].replace("\n", " ")
+    return in_markdown(str(section.get("description", "")).split("\n\n")[0].replace("\n", " "))
 
 
 def _table(section: Schema) -> str:

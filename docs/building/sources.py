@@ -17,7 +17,7 @@ def anchor_of(file: Path, name: str) -> str | None:
         if not found:
             return None
         scope = found[-1]
-    return f"__codelineno-0-{scope.lineno}"  # type: ignore[attr-defined]
+    return f"__codelineno-0-{scope.lineno}"
 
 
 def _defines(node: ast.AST, name: str) -> bool:

@@ -9,7 +9,7 @@ import pytest
 DOCS = Path(__file__).parents[2] / "docs"
 BLOCK = re.compile(r"^```(\w+)([^\n]*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 PAGES = sorted(DOCS.rglob("*.md"))
-SLOW = {"cluster", "compare", "bandwidth", "film"}
+SLOW = {"bandwidth", "cluster", "compare", "film", "ring", "tutorial"}
 
 
 def blocks(page):

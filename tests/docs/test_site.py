@@ -8,7 +8,7 @@ from browsing import chromium, page_address
 from building.formulas import draw_formulas
 from building.links import BrokenLinkError, Links
 from building.scenario_tables import scenario_page, value_text
-from building.site import CONFIGURATION, DOCS, ROOT, build, generated_pages, written_pages
+from building.site import CONFIGURATION, DOCS, ROOT, build, gather, generated_pages, written_pages
 
 from drake_formation.parts import kinds
 from drake_formation.parts.roles import ROLES
@@ -120,3 +120,15 @@ def test_every_kind_has_its_table():
 )
 def test_values_in_words(field, words):
     assert value_text(field) == words
+
+
+def test_every_link_leads_somewhere(tmp_path):
+    gather(tmp_path)
+    assert (tmp_path / "source/drake_formation/parts/springs/hookean.py.md").exists()
+
+
+def test_a_law_of_the_theory_is_named_as_in_the_code():
+    for page in sorted((DOCS / "theory").glob("*.md")):
+        named = re.findall(r"\[`([^`]+)`\]\([^)#]+#(\w+)\)", page.read_text(encoding="utf-8"))
+        assert named
+        assert all(shown == name for shown, name in named), page

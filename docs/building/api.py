@@ -9,8 +9,8 @@ from typing import Any
 import drake_formation
 from building.roles import in_markdown
 
-INTERNAL = {"drake_formation.cli", "drake_formation.places"}
-"""The command, which has a page of its own, and how it writes folders."""
+INTERNAL = {f"drake_formation.{name}" for name in ("cli", "places", "terminal")}
+"""The command, which has a page of its own, how it writes folders, and what it says."""
 
 
 def api_pages() -> dict[str, str]:

@@ -42,13 +42,20 @@ def build(out: Path = OUT) -> Path:
     shutil.rmtree(out, ignore_errors=True)
     gather(out / "pages")
     _write(out / "not_covered.md", "".join(f"- {words}\n" for words in NOT_COVERED))
-    _write(out / CONFIGURATION, (DOCS / CONFIGURATION).read_text(encoding="utf-8").replace("ROOT", ROOT.as_posix()))
+    _write(out / CONFIGURATION, configuration())
     program = Path(sys.executable).with_name("zensical")
     if subprocess.run([program, "build", "--strict", "--clean"], cwd=out, check=False).returncode:
         raise BuildError("the site is not built: Zensical warned of the above")
     for page in sorted((out / "site").rglob("*.html")):
         page.write_text(draw_formulas(page.read_text(encoding="utf-8")), encoding="utf-8")
     return out / "site" / "index.html"
+
+
+def configuration() -> str:
+    """Zensical's configuration, with all that ``docs/zensical.toml`` leaves open."""
+    packages = ", ".join(f'"reference/{name}.md"' for name in api_pages())
+    text = (DOCS / CONFIGURATION).read_text(encoding="utf-8")
+    return text.replace("[PYTHON]", f"[{packages}]").replace('"ROOT', f'"{ROOT.as_posix()}')
 
 
 def gather(folder: Path) -> None:

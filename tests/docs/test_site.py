@@ -8,7 +8,7 @@ from browsing import chromium, page_address
 from building.formulas import draw_formulas
 from building.links import BrokenLinkError, Links
 from building.scenario_tables import scenario_page, value_text
-from building.site import CONFIGURATION, DOCS, ROOT, build, gather, generated_pages, written_pages
+from building.site import DOCS, ROOT, build, configuration, gather, generated_pages, written_pages
 
 from drake_formation.parts import kinds
 from drake_formation.parts.roles import ROLES
@@ -62,7 +62,7 @@ def test_every_page_is_in_the_navigation():
             for value in entry.values() if isinstance(entry, dict) else [entry]:
                 yield from pages(value) if isinstance(value, list) else [value]
 
-    navigation = set(pages(tomllib.loads((DOCS / CONFIGURATION).read_text(encoding="utf-8"))["project"]["nav"]))
+    navigation = set(pages(tomllib.loads(configuration())["project"]["nav"]))
     there = {page.as_posix() for page, _ in [*written_pages().values(), *generated_pages().values()]}
     assert navigation == {page for page in there if not page.startswith("notebooks/")}
 

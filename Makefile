@@ -8,7 +8,7 @@ BENCH ?= .venv-bench
 # pip installs from outside, so that the environment needs no pip of its own (Debian ships venv without it).
 PIP := $(PYTHON) -m pip --python $(BIN)/python --disable-pip-version-check
 
-.PHONY: help demo test explore fuzz check lint types notebooks diagrams reproduce bench clean
+.PHONY: help demo test explore fuzz check lint types notebooks docs diagrams reproduce bench clean
 
 help:
 	@echo "make demo       run the paper's line formation and say where the pictures are"
@@ -17,6 +17,7 @@ help:
 	@echo "make fuzz       try mutated commands, and count what came of them; MINUTES=10 SEED=7 for others"
 	@echo "make check      lint, types and tests"
 	@echo "make notebooks  run the notebooks from top to bottom"
+	@echo "make docs       build the documentation into out/docs/site; every warning is an error"
 	@echo "make diagrams   export the pictures and schemas in diagrams/ anew"
 	@echo "make reproduce  rerun the paper's study into out/paper"
 	@echo "make bench      measure speed beside the peers, and write tests/benchmarks/README.md"
@@ -47,6 +48,9 @@ types: $(VENV)/installed-dev
 
 notebooks: $(VENV)/installed-dev
 	$(BIN)/python -m pytest tests/notebooks $(PYTEST)
+
+docs: $(VENV)/installed-dev
+	$(BIN)/python docs/build.py
 
 diagrams: $(VENV)/installed-dev
 	for name in line quadrilateral octagon s_curve shared-medium; do \

@@ -28,6 +28,7 @@ FILES = {"small.yaml": SWEEP, "both.yaml": COMPARISON}
 
 COMMANDS = {
     "run": ["run", "line", *SHORT, "--out", "run"],
+    "export": ["export", "run", "--csv", "run.csv"],
     "view": ["view", "line", *SHORT, "--html", "line.html"],
     "new": ["new", "mine"],
     "show": ["show", "line"],
@@ -43,7 +44,7 @@ COMMANDS = {
     "parts": ["parts"],
     "metrics": ["metrics"],
 }
-"""One way to use each command there is."""
+"""One way to use each command there is; one after the other, as some need what another wrote."""
 
 ALL_IN_ONE = """
 import json, sys
@@ -88,7 +89,7 @@ def test_nothing_of_a_terminal_comes_through_a_pipe(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "name", [name for name in COMMANDS if name not in ("run", "view", "schema", "reproduce", "compare")]
+    "name", [name for name in COMMANDS if name not in ("run", "export", "view", "schema", "reproduce", "compare")]
 )
 def test_a_program_gets_one_document_and_nothing_else(cli, name):
     Path("small.yaml").write_text(SWEEP)

@@ -8,11 +8,12 @@ BENCH ?= .venv-bench
 # pip installs from outside, so that the environment needs no pip of its own (Debian ships venv without it).
 PIP := $(PYTHON) -m pip --python $(BIN)/python --disable-pip-version-check
 
-.PHONY: help demo test explore fuzz check lint types notebooks docs diagrams reproduce bench clean
+.PHONY: help demo test test-long explore fuzz check lint types notebooks docs diagrams reproduce bench clean
 
 help:
 	@echo "make demo       run the paper's line formation and say where the pictures are"
-	@echo "make test       run the whole test suite, on the same examples each time"
+	@echo "make test       run the test suite, on the same examples each time"
+	@echo "make test-long  run the tests that it leaves out as they take long"
 	@echo "make explore    try the laws on new examples; MINUTES=10 by default"
 	@echo "make fuzz       try mutated commands, and count what came of them; MINUTES=10 SEED=7 for others"
 	@echo "make check      lint, types and tests"
@@ -27,7 +28,10 @@ demo: $(VENV)/installed
 	$(BIN)/drake-formation run diagrams/line.yaml --out out/line
 
 test: $(VENV)/installed-dev
-	$(BIN)/python -m pytest --numprocesses auto --dist loadfile $(PYTEST)
+	$(BIN)/python -m pytest --numprocesses auto --dist loadfile -m "not slow" $(PYTEST)
+
+test-long: $(VENV)/installed-dev
+	$(BIN)/python -m pytest --numprocesses auto --dist worksteal -m slow $(PYTEST)
 
 explore: $(VENV)/installed-dev
 	$(BIN)/python tests/explore.py $(or $(MINUTES),10) $(PYTEST)

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.slow  # dozens of processes
+
 SHORT = ["--set", "aggregation.duration=0.2", "--set", "transport.duration=0.3"]
 RUN = ["run", "line", *SHORT]
 SWEEP = """
@@ -99,7 +101,6 @@ COMMANDS = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "kind", "delay"),
     [

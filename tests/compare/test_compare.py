@@ -204,6 +204,7 @@ def test_the_shipped_ones_are_sound(name):
     assert comparison.description
 
 
+@pytest.mark.slow
 def test_the_command_leaves_tables_figures_and_scenarios(cli, written, tmp_path):
     out = tmp_path / "out"
     status, said, _ = cli("compare", written(), "--out", out)

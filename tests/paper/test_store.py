@@ -70,6 +70,7 @@ def test_the_longest_run_comes_first(store):
     assert next(iter(store.missing([SHORT, stiff]).values())) == stiff
 
 
+@pytest.mark.slow
 def test_more_runs_than_the_workers_may_make_are_made_all_the_same(store, monkeypatch):
     monkeypatch.setattr("drake_formation.paper.store.RUNS_PER_WORKER", 1)
     runs = [with_overrides(SHORT, {"springs.stiffness": float(k)}) for k in range(5)]

@@ -40,7 +40,14 @@ def positions(name, **settings):
     return np.stack([position.sel(time=time).values for time in (0.4, 1.0)])
 
 
-@pytest.fixture(scope="module", params=shipped_scenarios())
+SOME = ("line", "lossy", "robot-failure")
+"""A fluid one, one with packets and one with stages; the others take long together."""
+
+
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(name, marks=[] if name in SOME else pytest.mark.slow) for name in shipped_scenarios()],
+)
 def expected(request):
     return request.param, positions(request.param, accuracy=1e-10)
 

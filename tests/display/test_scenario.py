@@ -25,7 +25,7 @@ def test_parts_of_other_kinds_and_values_of_single_robots_are_listed():
     overrides |= {"robots.mass": {"1": 50.0, "default": 40.0}, "avoidance.line_of_sight": True}
     rows = {path: (value, meaning) for path, value, meaning in not_default(load_scenario("line", overrides=overrides))}
     assert rows["consensus.channel.kind"][0] == "packets"
-    assert rows["consensus.channel.loss"] == ("0.1", "share of packets that are lost")
+    assert rows["consensus.channel.loss"] == ("0.1", "share of packets that are lost (1)")
     assert rows["robots.mass"][0] == "{1: 50, default: 40}"
     assert rows["avoidance.line_of_sight"][0] == "true"
 

@@ -21,8 +21,8 @@ SIZE = (800, 500)
 """Of the window (pixels); software draws a larger one more slowly."""
 
 
-def chromium(size):
-    """Debian's Chromium and its driver, started."""
+def chromium(size=(1280, 800)):
+    """Debian's Chromium and its driver, started, with a window of a size (px)."""
     from selenium import webdriver
     from selenium.webdriver.chrome.service import Service
 

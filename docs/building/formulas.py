@@ -25,7 +25,8 @@ def _picture(latex: str, displayed: bool) -> str:
     from matplotlib.font_manager import FontProperties
     from matplotlib.textpath import TextPath
 
-    large = latex.replace(r"\frac", r"\dfrac") if displayed else latex
+    line = " ".join(latex.split())  # Matplotlib takes one line alone
+    large = line.replace(r"\frac", r"\dfrac") if displayed else line
     path = TextPath((0, 0), f"${large}$", size=SIZE, prop=FontProperties(math_fontfamily="cm"))
     left, bottom, right, top = (round(value) for value in path.get_extents().padded(4).extents)
     outline = "".join(

@@ -17,6 +17,7 @@ def blocks(page):
             BLOCK.findall(page.read_text(encoding="utf-8"))]  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "page",
     [

@@ -67,6 +67,7 @@ def sweep(cli, quick, folder):
     return cli("sweep", quick, "--out", folder, "--executor", "serial")
 
 
+@pytest.mark.slow
 def test_a_sweep_that_fills_the_disk_keeps_its_runs_and_goes_on_when_there_is_room(cli, disk, quick, tmp_path):
     disk.mount("size=100k")
     out = disk.folder / "o"
@@ -99,6 +100,7 @@ def test_a_disk_that_holds_the_runs_but_not_their_dataset_loses_none(cli, disk, 
     assert sweep(cli, quick, out)[0] == 0
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="no limits of resources")
 def test_a_limit_on_the_size_of_files_stops_a_sweep_in_words(quick, tmp_path):
     """Where nothing can be mounted, this is as good as a full disk."""

@@ -27,6 +27,7 @@ def until(condition, process):
         time.sleep(0.02)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "status", "word"), [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")]
 )
@@ -57,6 +58,7 @@ def test_a_sweep_whose_parent_is_killed_leaves_silence_and_its_runs(tmp_path):
     assert count(out) > 20
 
 
+@pytest.mark.slow
 def test_a_run_that_is_killed_leaves_its_place_free(tmp_path):
     long = [part.replace("=0.3", "=1000000") for part in RUN]
     process = started(*long, "--out", tmp_path / "o", cwd=tmp_path)

@@ -18,6 +18,7 @@ def test_a_second_sweep_is_told_to_wait(cli, quick, tmp_path):
     assert "another process is sweeping into this folder; wait for it" in err
 
 
+@pytest.mark.slow
 def test_two_runs_are_both_whole_and_each_says_where(tmp_path):
     processes = [started(*RUN, f"--set=springs.stiffness={k}", "--out", "o", cwd=tmp_path) for k in (1.0, 2.0)]
     places = []
@@ -34,6 +35,7 @@ def test_two_runs_are_both_whole_and_each_says_where(tmp_path):
         assert [float(value) for value in stiffness] == [1.0, 2.0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("parts", [("table1",)])
 def test_two_studies_both_have_their_report(tmp_path, parts):
     only = [word for part in parts for word in ("--only", part)]

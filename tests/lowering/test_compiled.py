@@ -41,6 +41,7 @@ def same_derivatives(compiled, diagram, context):
     np.testing.assert_allclose(found / scale, expected / scale, **EXACT)
 
 
+@pytest.mark.slow
 @few
 @given(st.data())
 def test_derivatives_are_the_diagrams(data):
@@ -69,6 +70,7 @@ def test_both_phases_of_the_shipped_scenarios(name, phase):
         same_derivatives(compiled, diagram, context)
 
 
+@pytest.mark.slow
 def test_outputs_are_the_diagrams():
     diagram = build_diagram(load_scenario("quadrilateral", overrides={"avoidance.sensing": "nearest"}))
     compiled = lower(diagram)

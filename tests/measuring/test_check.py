@@ -26,6 +26,7 @@ def buckling():
     )
 
 
+@pytest.mark.slow
 def test_a_run_that_amplifies_its_errors_is_found_out():
     scenario = buckling()
     result = simulate(scenario, engine="compiled")

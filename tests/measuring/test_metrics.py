@@ -98,6 +98,7 @@ def test_the_exponential_engine_has_them_too(case):
     assert max(found.values()) < 1, found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ["blocks", "compiled"])
 @pytest.mark.parametrize("case", CASES)
 def test_at_the_default_accuracy_what_is_left_is_the_runs_own_error(case, engine):

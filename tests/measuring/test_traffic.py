@@ -28,6 +28,7 @@ def test_without_packets_there_is_nothing_to_say():
     assert figures.peak_age_s is None
 
 
+@pytest.mark.slow
 def test_a_network_without_fault_delivers_all():
     figures = metrics(run(period=0.02, bits=100.0))
     assert figures.messages_sent == figures.messages_delivered == pytest.approx(12 * 4.0 / 0.02, abs=12)
@@ -75,6 +76,7 @@ def test_time_outside_tolerance_counts_every_crossing():
     assert beyond.any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "told"), [("none", []), ("leader_follower", ["1-2", "1-3", "1-4"])])
 @pytest.mark.parametrize("engine", ["blocks", "compiled"])
 def test_channels_nobody_listens_to_carry_nothing(engine, kind, told):

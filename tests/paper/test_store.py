@@ -32,6 +32,7 @@ def test_every_change_of_the_scenario_is_another_run(store):
     assert store.path(SHORT) == store.path(with_overrides(OTHER, {"springs.stiffness": 1.45}))
 
 
+@pytest.mark.slow
 def test_only_what_is_missing_is_run_once_each_on_all_processors(store):
     store[SHORT]
     calls = []

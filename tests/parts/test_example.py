@@ -121,6 +121,7 @@ def test_a_metric_that_cannot_be_used_is_told_of_and_costs_no_other(installed):
     assert "mean_consensus_error_m" in result.stdout
 
 
+@pytest.mark.slow
 def test_a_sweep_notices_that_another_packages_code_has_changed(installed, tmp_path, monkeypatch):
     (tmp_path / "formation_extras").unlink()
     shutil.copytree(EXAMPLE / "formation_extras", tmp_path / "formation_extras")

@@ -51,6 +51,7 @@ def leaping(engine):
     return simulate(load_scenario("line", overrides=overrides | {"transport.duration": 5.0}), engine=engine)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ["blocks", "compiled"])
 def test_no_step_leads_over_an_obstacle(engine):
     """The run is made again in shorter steps, and the robot is pushed aside."""

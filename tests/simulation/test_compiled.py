@@ -37,6 +37,7 @@ def test_another_integrator_is_refused():
         simulate(scenario, engine="compiled")
 
 
+@pytest.mark.slow
 def test_the_exponential_engine_refuses_a_force_that_jumps_before_it_runs():
     scenario = load_scenario("line", overrides={"avoidance.sensing": "nearest"})
     with pytest.raises(ScenarioError, match=r"avoidance.sensing: .*nearest.*allowed: in_range, or the engine compiled"):

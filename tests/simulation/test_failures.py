@@ -145,6 +145,7 @@ def test_a_grip_that_is_let_go_exerts_nothing_until_it_holds_again(strength):
     assert float(np.linalg.norm(result["spring_force"].sel(robot=2, time=time[dropped]), axis=1).min()) > 0
 
 
+@pytest.mark.slow
 def test_engines_carry_out_the_same_failures():
     lost = {"robot": 2, "time": 1.0, "kind": "freezes", "response": "re_form", "repaired_at": 2.0, "notice_after": 0.1}
     coupled = {"springs.graph": "complete", "springs.stiffness": 20.0, "springs.break_at_strain": 0.2}

@@ -19,6 +19,7 @@ def engine(request):
     return request.param
 
 
+@pytest.mark.slow
 @given(pair=pairs_of_scenarios())
 @settings(max_examples=3, deadline=None, suppress_health_check=list(HealthCheck))
 def test_a_run_does_not_depend_on_what_ran_before(pair):

@@ -80,6 +80,7 @@ def test_a_footprint_is_as_good_as_a_larger_obstacle():
     assert metrics(point).min_clearance_m == pytest.approx(metrics(wide).min_clearance_m, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_the_exponential_engine_refuses_a_notch_by_name():
     notched = {"kind": "polygon", "vertices": [[4.0, 4.2], [6.0, 4.2], [6.0, 6.0], [5.0, 4.5], [4.0, 6.0]]}
     with pytest.raises(ScenarioError, match=r"avoidance.obstacles.1: the engine exponential .* notch"):

@@ -6,6 +6,7 @@ import sys
 import time
 from pathlib import Path
 
+import pytest
 import xarray as xr
 
 QUICK = """\
@@ -62,6 +63,7 @@ def test_another_sweep_in_the_folder_is_refused(cli):
     assert "engine compiled, now blocks" in err
 
 
+@pytest.mark.slow
 def test_ctrl_c_stops_in_good_order_and_says_how_to_go_on(tmp_path):
     (tmp_path / "long.yaml").write_text(LONG)
     command = [sys.executable, "-m", "drake_formation", "sweep", "long.yaml", "--out", "o", "--workers", "1"]

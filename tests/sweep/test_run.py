@@ -56,6 +56,7 @@ def test_every_run_is_the_simulation_of_its_scenario(tmp_path, sweep):
         assert float(found["stiffness"]) == sweep.overrides(index)["springs.stiffness"]
 
 
+@pytest.mark.slow
 def test_processes_give_the_same_to_the_last_bit(tmp_path, serial):
     xr.testing.assert_identical(run(LARGER, tmp_path, executor="processes", workers=2), serial)
 
@@ -70,6 +71,7 @@ def test_any_order_gives_the_same_to_the_last_bit(tmp_path, serial, monkeypatch)
     xr.testing.assert_identical(run(LARGER, tmp_path), serial)
 
 
+@pytest.mark.slow
 def test_a_worker_killed_half_way_makes_no_difference(tmp_path, serial, monkeypatch):
     pools = []
 

@@ -39,6 +39,7 @@ def test_what_ran_before_makes_no_difference(data):
 _WARM = Runner("blocks", None)
 
 
+@pytest.mark.slow
 def test_a_diagram_is_built_once_for_each_structure():
     runner = Runner("compiled", None)
     for scenario in (LINE, RING, LINE, LINE, RING):

@@ -31,6 +31,7 @@ def shortened(axis):
     return axis
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", shipped_sweeps())
 def test_a_shipped_sweep_runs(tmp_path, name):
     with run_sweep(miniature(name), tmp_path, executor="serial") as dataset:

@@ -60,6 +60,7 @@ def hand_overs(result):
     return int((felt[1:] != felt[:-1]).any(axis=1).sum())
 
 
+@pytest.mark.slow
 def test_robots_that_are_equally_near_no_longer_see_it_in_turns():
     at_once = simulate(tie(), engine="compiled")
     holding = simulate(tie(**{"avoidance.margin": 0.1}), engine="compiled")
@@ -69,6 +70,7 @@ def test_robots_that_are_equally_near_no_longer_see_it_in_turns():
     assert "remark" not in holding.attrs
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ["compiled", "exponential"])
 def test_engines_agree(engine):
     obstacles = [{"position": [9.0, 5.0]}, {"position": [10.5, 2.0]}]

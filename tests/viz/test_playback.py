@@ -35,6 +35,7 @@ def test_the_first_sample_has_the_heading_and_the_grid_at_rest(result):
     np.testing.assert_allclose(np.diff(nodes[..., 1], axis=0), 2 / 3)
 
 
+@pytest.mark.slow
 def test_compiled_runs_tell_the_same():
     scenario = carried("{kind: lattice, rows: 2, columns: 2}", robots=MIXED)
     blocks, compiled = (simulate(scenario, engine=engine) for engine in ("blocks", "compiled"))

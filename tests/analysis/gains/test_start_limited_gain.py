@@ -23,6 +23,7 @@ def forces_of(scenario):
     return force[~carried].max(initial=0.0), force[carried].max(), np.linalg.norm(errors, axis=1).max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "delta"), [("line", 0.0), ("line", 1e4), ("quadrilateral", 2e4), ("octagon", 50.0)])
 def test_the_run_has_these_forces(name, delta):
     scenario = load_scenario(name, overrides={"consensus.delta": delta})

@@ -53,6 +53,7 @@ CHANNELS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CHANNELS)
 def test_simulation_decays_below_the_boundary_and_grows_above(case):
     channel, low, high = CHANNELS[case]

@@ -128,6 +128,7 @@ def prepared():
     return PreparedRun(scene([{"position": [9.0, k], "radius": 0.0} for k in (0.0, 1.0, 2.0)]), engine="compiled")
 
 
+@pytest.mark.slow
 @given(places, st.sampled_from([0.1, 0.3]), st.sampled_from([1.0, 3.0, 10.0]))
 @settings(max_examples=25, deadline=None)
 def test_no_scene_brings_a_robot_nearer_than_asked(prepared, obstacles, clearance, rate):
@@ -140,6 +141,7 @@ def test_no_scene_brings_a_robot_nearer_than_asked(prepared, obstacles, clearanc
     assert series["clearance"].min() >= clearance - 1e-5
 
 
+@pytest.mark.slow
 def test_without_it_the_same_robots_come_too_near():
     around = [{"position": [3.0, 0.5], "radius": 0.3}]
     free = load_scenario("line", overrides={**FAST, "avoidance": {"obstacles": around, "gain": 1e-3, "range": 0.2}})
@@ -148,6 +150,7 @@ def test_without_it_the_same_robots_come_too_near():
     assert 0.3 - 1e-5 <= kept < 0.4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tracking", [{"kind": "lqr_discrete", "Q": 1e4, "period": 0.2}, {"kind": "lqi"}])
 def test_it_keeps_the_clearance_whatever_controller_it_corrects(tracking):
     scenario = with_overrides(scene([{"position": [3.0, 0.5], "radius": 0.3}]), {"tracking": tracking})
@@ -162,6 +165,7 @@ def test_it_is_felt_in_transport_only():
     assert simulate(scenario, engine="compiled")["clearance"].min() < 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ["compiled", "exponential"])
 def test_engines_agree(engine):
     scenario = scene([{"position": [3.0, 0.5], "radius": 0.3}, {"position": [3.5, -0.8]}])

@@ -64,6 +64,7 @@ def test_a_share_of_the_force_at_every_state_heard_is_added():
     assert block.GetOutputPort("force").Eval(context) == pytest.approx(forces[0] + 0.5 * forces[1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("channel", [None, {"kind": "packets", "period": 0.05, "delay": 0.02, "loss": 0.1}])
 def test_compiled_agrees_with_blocks_also_where_obstacles_move(channel):
     scenario = passing(channel, [*OBSTACLES, MOVING], duration=3.0)

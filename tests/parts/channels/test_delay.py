@@ -39,6 +39,7 @@ def test_without_delay_it_is_the_wire_itself():
         np.testing.assert_array_equal(*runs)
 
 
+@pytest.mark.slow
 def test_engines_agree_and_finer_pieces_change_little():
     runs = [simulate(line(0.2), engine=engine) for engine in ("blocks", "compiled")]
     ends = [run["position"].values[-1] for run in runs]

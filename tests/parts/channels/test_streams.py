@@ -36,12 +36,14 @@ def test_on_every_engine(on_blocks):
     np.testing.assert_array_equal(traffic("compiled"), on_blocks)
 
 
+@pytest.mark.slow
 def test_in_another_process(on_blocks, tmp_path):
     file = tmp_path / "traffic.npy"
     subprocess.run([sys.executable, "-c", ALONE, str(file)], check=True, env=os.environ | {"PYTHONPATH": PATH})
     np.testing.assert_array_equal(np.load(file), on_blocks)
 
 
+@pytest.mark.slow
 def test_with_other_random_parts(on_blocks):
     np.testing.assert_array_equal(traffic("compiled", **NOISE)[-1], on_blocks[-1])
 

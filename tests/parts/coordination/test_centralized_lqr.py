@@ -121,6 +121,7 @@ def test_parameters_design_it_anew_for_each_phase():
         np.testing.assert_allclose(changed, forces[2:4], rtol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ["compiled", "exponential"])
 def test_engines_agree(engine):
     short = scenario(**SHORT_, consensus__relative_cost=5.0)

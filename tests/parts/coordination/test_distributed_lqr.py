@@ -114,6 +114,7 @@ def test_parameters_design_it_anew():
     assert np.abs(found - before).max() > 1
 
 
+@pytest.mark.slow
 def test_engines_agree():
     start = [[2.0, 3.0], [3.0, 3.2], [2.4, 4.1]]
     scenario = with_overrides(on_graph(nx.path_graph(3), relative_cost=20.0), {**SHORT, "robots.start": start})

@@ -79,6 +79,7 @@ def test_a_chain_moves_as_its_cascade_of_linear_systems():
     assert not result["tracking_force"].sel(robot=[2, 3, 4]).any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("graph", ["complete", "path"])
 def test_engines_agree(graph):
     ends = [simulate(scenario(graph), engine=engine)["position"][-1] for engine in ("blocks", "compiled")]

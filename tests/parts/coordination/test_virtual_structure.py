@@ -103,6 +103,7 @@ def test_who_does_not_hear_the_robot_held_back_is_told_by_the_others():
     assert progress("path")[3] < progress("path", k_sync=0.0, d_sync=0.0, k_feedback=0.0)[3] / 2
 
 
+@pytest.mark.slow
 def test_engines_agree_from_starts_out_of_formation():
     gathering = scenario(**{"robots.start": [[0.8, 5.1], [0.25, 2.45], [2.6, 2.0], [3.1, 4.5]],
                             "aggregation.duration": 1.0, "transport.duration": 2.0})  # fmt: skip

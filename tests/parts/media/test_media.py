@@ -35,6 +35,7 @@ def compiled(diagram, names, end):
     return lowered.named(names, piece.recorded)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("medium", SLOW)
 def test_both_engines_carry_the_same_packets_and_none_is_forgotten(medium):
     diagram = build_diagram(scenario(SLOW[medium], {"delay": 0.03, "spread": 0.03, "loss": 0.1}))
@@ -107,6 +108,7 @@ def test_what_contradicts_itself_is_refused(medium, channel, message):
         load_scenario("shared-medium", overrides={"consensus.channel": channel, "consensus.medium": medium})
 
 
+@pytest.mark.slow
 def test_channels_that_nobody_listens_to_offer_nothing():
     channel, medium = {"kind": "packets", "period": 0.02}, SLOW["tdma"]
     alone = {"kind": "none", "channel": channel, "medium": medium}

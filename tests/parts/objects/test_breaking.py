@@ -123,6 +123,7 @@ OFF = {
 """The last robot starts 2 cm off its grip, which takes 200 N there; the grips of the others bear their share."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", PLATES)
 def test_a_grip_that_is_pulled_too_hard_lets_go_for_good(kind):
     scenario = carried(PLATES[kind], **OFF)

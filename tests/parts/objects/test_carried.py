@@ -90,6 +90,7 @@ def test_symbols_give_the_same_numbers(block):
     np.testing.assert_allclose(traced, expected, rtol=1e-11, atol=1e-11)
 
 
+@pytest.mark.slow
 @each_kind
 def test_all_engines_agree(kind):
     scenario = carried(kind, simulator="{accuracy: 1.0e-9}", **UNLIKE)

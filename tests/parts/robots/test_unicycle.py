@@ -40,6 +40,7 @@ def test_it_turns_as_fast_as_its_held_point_moves_sideways(heading, velocity):
     assert axle @ along == pytest.approx(velocity @ along, abs=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ["blocks", "compiled"])
 def test_a_result_tells_the_heading_to_which_it_turned(engine):
     result = simulate(

@@ -80,6 +80,7 @@ def test_a_robot_whose_force_is_known_and_positions_are_exact_knows_its_velocity
     np.testing.assert_allclose(after["measured_velocity"].values, now["velocity"].values, atol=2e-4)
 
 
+@pytest.mark.slow
 def test_engines_draw_and_filter_alike():
     scenario = filtered(two(duration=1.0), period=0.05, gain={"1": "steady", "2": "time_varying"})
     found, blocks = (simulate(scenario, engine=name) for name in ("compiled", "blocks"))

@@ -14,7 +14,7 @@ import xarray as xr
 from drake_formation.lowering.errors import LoweringError
 from drake_formation.measuring import Metrics
 from drake_formation.paper.measured import measured
-from drake_formation.scenario import Scenario, ScenarioError, resolve, to_yaml
+from drake_formation.scenario import Scenario, ScenarioError, resolve
 from drake_formation.simulation import SimulationError, simulate
 from drake_formation.sweep.errors import SweepStoppedError
 from drake_formation.sweep.processes import Processes, WorkerDiedError
@@ -83,7 +83,8 @@ class Store:
 
     def path(self, scenario: Scenario, kind: str = RESULT) -> Path:
         """File of a scenario's result, or of its figures."""
-        text = "\n".join([to_yaml(scenario), json.dumps(versions()), self._engine])
+        # Not YAML: of the thousands of keys of a report it would take a minute.
+        text = "\n".join([repr(scenario.model_dump()), json.dumps(versions()), self._engine])
         return self._folder / f"{scenario.name}-{hashlib.sha256(text.encode()).hexdigest()[:16]}{kind}"
 
     def missing(self, scenarios: Iterable[Scenario], figures: Iterable[Scenario] = ()) -> dict[Path, Scenario]:

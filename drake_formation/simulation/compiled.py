@@ -116,14 +116,16 @@ class CompiledRun:
             wired=True,
         )
         for piece in pieces:
-            self.recording.add(piece.times, self._lowered.named(self.recording.names, piece.recorded))
+            recorded = self._lowered.named(self.recording.names, piece.recorded)
+            self.recording.add(piece.times, recorded)
             if self._progress:
                 self._progress(self.context.get_time())
             if piece.status == Status.NOT_FINITE:
                 raise NonFiniteStateError
             if piece.status == Status.STEP_TOO_SMALL:
                 raise RuntimeError("its steps became too small to go on")
-            if not self.fixed_step and np.abs(piece.states).max(initial=0.0) > FARTHEST:
+            states = [recorded[port] for port in self.recording.ports["state"]]
+            if not self.fixed_step and np.abs(states).max(initial=0.0) > FARTHEST:
                 raise BeyondBoundsError
 
     def carry_out_updates(self) -> None:

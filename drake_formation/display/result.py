@@ -1,6 +1,6 @@
 """A result as HTML: the paths of its robots, and its metrics."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 from xml.etree.ElementTree import Element
 
@@ -10,15 +10,17 @@ from numpy.typing import NDArray
 from drake_formation.display.markup import QUIET, element, html, table
 from drake_formation.display.plane import Plane
 from drake_formation.display.scenario import draw_obstacles, surroundings
-from drake_formation.measuring import measure
+from drake_formation.measuring import measured_so_far
 from drake_formation.measuring.registry import known
 from drake_formation.scenario.resolve import resolve
 from drake_formation.simulation.result import series_of
+from drake_formation.simulation.series import Series
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from drake_formation.measuring.metric import Value
+    from drake_formation.viz.figures.looks import Colour
 
 Array = NDArray[np.float64]
 
@@ -35,12 +37,15 @@ def result_html(result: "xr.Dataset") -> str:
     Raises:
         ValueError, ScenarioError: it is not a result of this version.
     """
+    from drake_formation.viz.figures import robot_colours  # with Matplotlib, which is slow to import
+
     series = series_of(result)
-    measured = measure(series) if (series["phase"] == 1).any() else {}
+    measured = measured_so_far(series)
     about = f" for {series['time'][-1] - series['time'][0]:.6g} s, engine {series.choice.engine}"
     heading = element("div", element("b", str(result.attrs["title"])), about)
     remark = element("div", str(result.attrs.get("remark", "")), style=QUIET)
-    return html(element("div", heading, paths(result).svg, _figures(measured), remark))
+    drawn = paths(series, list(robot_colours(result).values()))
+    return html(element("div", heading, drawn.svg, _figures(measured), remark))
 
 
 def metrics_html(metrics: "Mapping[str, Value]") -> str:
@@ -63,17 +68,19 @@ def shown(value: "Value") -> str:
     return ", ".join("none" if number is None else f"{number:.4g}" for number in numbers)
 
 
-def paths(result: "xr.Dataset") -> Plane:
-    """Where robots went, before the hand-off dotted, with their slots at the goal and the obstacles."""
-    from drake_formation.viz.figures import robot_colours
+def paths(series: Series, colours: "Sequence[Colour]") -> Plane:
+    """Where robots went, before the hand-off dotted, with their slots at the goal and the obstacles.
 
-    series = series_of(result)
-    formation, reach = resolve(series.scenario), float(result.attrs["sensing_range_m"])
+    Args:
+        series: a run.
+        colours: of its robots.
+    """
+    formation = resolve(series.scenario)
     positions, goal = series["position"], formation.goal + formation.slots
-    plane = Plane(*surroundings(formation, [positions, goal], reach), WIDTH, HEIGHT)
-    draw_obstacles(plane, formation, reach)
+    plane = Plane(*surroundings(formation, [positions, goal]), WIDTH, HEIGHT)
+    draw_obstacles(plane, formation)
     carried = series["phase"] == 1
-    for i, (r, g, b, *_) in enumerate(robot_colours(result).values()):
+    for i, (r, g, b, *_) in enumerate(colours):
         colour = f"rgb({255 * r:.0f}, {255 * g:.0f}, {255 * b:.0f})"
         for part, dashes in ((~carried, "2 3"), (carried, "none")):
             if part.sum() > 1:

@@ -85,10 +85,8 @@ def _shortened(text: str) -> str:
 def world(formation: Formation) -> Plane:
     """Where robots start and are to come to rest, and obstacles with the range at which they are felt."""
     goal = formation.goal + formation.slots
-    reach = sensing_range(formation)
-    low, high = surroundings(formation, [formation.starts, goal], reach)
-    plane = Plane(low, high, WIDTH, HEIGHT)
-    draw_obstacles(plane, formation, reach)
+    plane = Plane(*surroundings(formation, [formation.starts, goal]), WIDTH, HEIGHT)
+    draw_obstacles(plane, formation)
     plane.line(np.array([formation.centre, formation.goal]), stroke="#bbb", stroke_dasharray="2 4")
     for start, end in zip(formation.starts, goal, strict=True):
         plane.dot(start, 3.5, fill="none", stroke="#0072b2")
@@ -96,25 +94,21 @@ def world(formation: Formation) -> Plane:
     return plane
 
 
-def sensing_range(formation: Formation) -> float:
-    """At which robots sense obstacles at the most (m)."""
-    return max(float(getattr(part.config, "range", 0.0)) for part in formation.parts["avoidance"])
-
-
-def surroundings(formation: Formation, places: list[Array], reach: float) -> tuple[Array, Array]:
+def surroundings(formation: Formation, places: list[Array]) -> tuple[Array, Array]:
     """Corners of a rectangle about some places, and about all obstacles with their range where they are at first."""
     corners = [place.reshape(-1, 2) for place in places]
     for obstacle in formation.obstacles:
-        grown = obstacle.radius + reach
+        grown = obstacle.radius + formation.felt_within
         corners += [obstacle.vertices - grown, obstacle.vertices + grown]
     everything = np.concatenate(corners)
     return everything.min(axis=0), everything.max(axis=0)
 
 
-def draw_obstacles(plane: Plane, formation: Formation, reach: float) -> None:
+def draw_obstacles(plane: Plane, formation: Formation) -> None:
     """Obstacles where they are before they move, with their range dashed."""
     from drake_formation.viz.obstacles import grown_outline  # with Matplotlib, which is slow to import
 
+    reach = formation.felt_within
     for obstacle in formation.obstacles:
         if len(obstacle.vertices) == 1:
             (middle,) = obstacle.vertices

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from drake_formation.measuring import measure
+from drake_formation.measuring import measured_so_far
 from drake_formation.simulation.result import series_of
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def write_mat(result: "xr.Dataset", path: str | Path) -> None:
     from scipy.io import savemat  # slow to import
 
     series = series_of(result)
-    figures = measure(series) if (series["phase"] == 1).any() else {}
+    figures = measured_so_far(series)
     struct: dict[str, Any] = {str(name): _array(variable.values) for name, variable in result.variables.items()}
     struct["units"] = {str(name): v.attrs["units"] for name, v in result.variables.items() if "units" in v.attrs}
     struct["dimensions"] = {str(name): _cells(variable.dims) for name, variable in result.variables.items()}

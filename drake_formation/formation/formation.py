@@ -131,6 +131,17 @@ class Formation:
         return np.concatenate([self.starts[robot], self.start_velocities[robot]])
 
     @cached_property
+    def sensing_ranges(self) -> Array:
+        """At which every robot senses obstacles, from its footprint on (m), shape (N,); 0 where it senses none."""
+        return np.array([getattr(part.config, "range", 0.0) for part in self.parts["avoidance"]], dtype=float)
+
+    @cached_property
+    def felt_within(self) -> float:
+        """How far from obstacles the middle of a robot is at the most where it senses them (m); 0 where none does."""
+        reach = float(self.sensing_ranges.max())
+        return reach + float(self.footprints.max()) if reach else 0.0
+
+    @cached_property
     def over_wires(self) -> bool:
         """Whether what is sent over any channel is received, at once and exactly."""
         return all(getattr(part, "is_wire", False) for part in self.parts["channel"])

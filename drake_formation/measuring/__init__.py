@@ -13,6 +13,8 @@ from drake_formation.measuring.metric import Metric, Metrics, Value, metric
 from drake_formation.sources import OWN
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import xarray as xr
 
     from drake_formation.measuring.transport import Transport
@@ -51,6 +53,11 @@ def measure(series: "Series") -> Metrics:
     transport = Transport(series)
     with np.errstate(over="ignore", invalid="ignore"):  # a run that diverged may end in numbers whose squares overflow
         return Metrics(**{name: _measured(its, transport) for name, its in known().items()})
+
+
+def measured_so_far(series: "Series") -> "Mapping[str, Value]":
+    """As :func:`measure`, but of a run that ended before the transport began nothing."""
+    return measure(series) if (series["phase"] == 1).any() else {}
 
 
 def register(metric: Metric) -> Metric:

@@ -80,9 +80,8 @@ def worst_leap(scenario: Scenario, recording: Recording) -> Leap | None:
     transport = (recording.phases == 1)[:, None]
     worst = None
     formation = resolve(scenario)
-    ranges = np.array([getattr(part.config, "range", 0.0) for part in formation.parts["avoidance"]])
     for number, obstacle in enumerate(formation.obstacles, start=1):
-        reach = obstacle.radius + ranges
+        reach = obstacle.radius + formation.sensing_ranges
         if formation.footprints.any():
             reach = reach + formation.footprints
         place, way, (length, moved) = position, move, lengths

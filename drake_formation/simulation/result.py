@@ -124,7 +124,7 @@ def labelled_result(series: Series) -> "xr.Dataset":
     attributes = {
         "title": scenario.name,
         "scenario": to_yaml(scenario),
-        "sensing_range_m": max(float(getattr(part.config, "range", 0.0)) for part in formation.parts["avoidance"]),
+        "sensing_range_m": float(formation.sensing_ranges.max()),
         "hand_off_time_s": formation.hand_off,
         "engine": series.choice.engine,
         "drake_formation_version": version("drake-formation"),

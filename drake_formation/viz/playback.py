@@ -58,9 +58,7 @@ class Playback:
         self._series = series_of(self._result)
         self._times = self._series["time"]
         self.title = str(result.attrs["title"])
-        self.sensing_range = float(result.attrs["sensing_range_m"])
-        if self.sensing_range:  # it begins at the footprint
-            self.sensing_range += float(self.formation.footprints.max())
+        self.sensing_range = self.formation.felt_within
         self.begin, self.end = float(self._times[0]), float(self._times[-1])
         self.lost = shown < len(whole["time"])
         motion = (self._series[name] for name in ("position", "velocity", "acceleration"))

@@ -1,4 +1,4 @@
-"""Lengths of vectors in the plane."""
+"""Lengths and turns of vectors in the plane."""
 
 from typing import TYPE_CHECKING
 
@@ -24,6 +24,11 @@ def length_of(vectors: Array) -> Array:
     with np.errstate(over="ignore"):  # a run that diverged may end in numbers whose squares overflow
         lengths: Array = np.sqrt(vectors[..., 0] ** 2 + vectors[..., 1] ** 2)
     return lengths
+
+
+def turned_left(vectors: Array) -> Array:
+    """Vectors a quarter turn to the left, of the same shape (…, 2)."""
+    return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
 
 
 def least_length(begin: Array, way: Array) -> Array:

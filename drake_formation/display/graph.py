@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 from drake_formation.display.markup import html
 from drake_formation.display.plane import Plane
+from drake_formation.vectors import turned_left
+from drake_formation.viz.palette import CHANNEL
 
 Array = NDArray[np.float64]
 Pairs = Iterable[tuple[int, int]]
@@ -14,8 +16,8 @@ Pairs = Iterable[tuple[int, int]]
 WIDTH, HEIGHT = 260.0, 220.0
 """Of a drawing at the most (px)."""
 
-SPRING, CHANNEL = "#b0a08c", "#009e73"
-"""Colours."""
+SPRING = "#b0a08c"
+"""Colour of a spring."""
 
 ASIDE = 2.5
 """By how much channels are drawn beside springs (px)."""
@@ -68,4 +70,4 @@ def drawing(places: Array, *, springs: Pairs = (), channels: Pairs = ()) -> Plan
 def _aside(way: Array) -> Array:
     """A step to the left of a way (px)."""
     length = float(np.hypot(*way))
-    return ASIDE * np.array([-way[1], way[0]]) / length if length else np.zeros(2)
+    return ASIDE * turned_left(way) / length if length else np.zeros(2)

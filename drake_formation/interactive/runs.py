@@ -2,9 +2,8 @@
 
 import time
 
-from drake_formation.lowering.errors import LoweringError
 from drake_formation.parameters import structure
-from drake_formation.scenario import Scenario, ScenarioError, resolve
+from drake_formation.scenario import Scenario, resolve
 from drake_formation.simulation import PreparedRun
 from drake_formation.simulation.series import Series
 
@@ -46,9 +45,5 @@ class Runs:
         for prepared in self._prepared:
             if prepared.structure == wanted:
                 return prepared
-        try:
-            made = PreparedRun(scenario, engine="compiled")
-        except (LoweringError, ScenarioError):
-            made = PreparedRun(scenario)
-        self._prepared.append(made)
-        return made
+        self._prepared.append(PreparedRun.compiled(scenario))
+        return self._prepared[-1]

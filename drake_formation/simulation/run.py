@@ -18,7 +18,7 @@ from drake_formation.parameters import (
     write_start,
 )
 from drake_formation.parts.part import PartFailedError
-from drake_formation.scenario import Scenario, resolve
+from drake_formation.scenario import Scenario, ScenarioError, resolve
 from drake_formation.simulation.choice import Choice, choose
 from drake_formation.simulation.clearance import contact
 from drake_formation.simulation.engine import Engine, Start
@@ -117,6 +117,14 @@ class PreparedRun:
             self.choice, self._start = Choice("blocks", str(error)), ENGINES["blocks"](self.diagram)
         self._context = self.diagram.CreateDefaultContext()
         self._robots = resolve(scenario).robots
+
+    @classmethod
+    def compiled(cls, scenario: Scenario) -> "PreparedRun":
+        """The diagram compiled, for many runs; or as the scenario runs best, where it cannot be."""
+        try:
+            return cls(scenario, engine="compiled")
+        except (LoweringError, ScenarioError):
+            return cls(scenario)
 
     def run(self, scenario: Scenario, *, progress: Progress | None = None) -> Series:
         """Run a scenario of the same structure.

@@ -6,11 +6,10 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from drake_formation.simulation.events import HAND_OFF
+from drake_formation.viz.palette import ALARM
 from drake_formation.viz.playback import Playback
 
 Array = NDArray[np.float64]
-
-COLOUR = "#cc001a"
 
 
 class FilmMarks:
@@ -28,8 +27,8 @@ class FilmMarks:
         happened = [event for event in playback.events if event.kind != HAND_OFF]
         self._when = np.array([event.time for event in happened])
         self._where = np.array([event.place for event in happened]).reshape(-1, 2)
-        (self._marks,) = axes.plot([], [], "v", color=COLOUR, markersize=6, markeredgecolor="white", zorder=5)
-        (self._crosses,) = axes.plot([], [], "x", color=COLOUR, markersize=11, markeredgewidth=2.2, zorder=6)
+        (self._marks,) = axes.plot([], [], "v", color=ALARM, markersize=6, markeredgecolor="white", zorder=5)
+        (self._crosses,) = axes.plot([], [], "x", color=ALARM, markersize=11, markeredgewidth=2.2, zorder=6)
 
     def show(self, number: int, points: Array) -> list[Artist]:
         """Draw a picture.

@@ -6,8 +6,10 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from numpy.typing import NDArray
 
+from drake_formation.vectors import turned_left
 from drake_formation.viz.links import alive, channel_links
 from drake_formation.viz.packets import packets_of
+from drake_formation.viz.palette import ALARM, CHANNEL, FLYING, SILENT
 from drake_formation.viz.playback import Playback
 
 Array = NDArray[np.float64]
@@ -17,8 +19,6 @@ ASIDE = 0.04
 
 PACKET, SIZES = 0.05, (1.2, 4.0)
 """Size of a packet (m), and between which sizes it is drawn (1/72 in)."""
-
-CHANNEL, SILENT, FLYING, LOST = "#009e73", "0.25", "#00543d", "#cc001a"
 
 
 class FilmTalk:
@@ -41,7 +41,7 @@ class FilmTalk:
         axes.add_collection(self._lines)
         size = float(np.clip(PACKET * scale, *SIZES))
         (self._flying,) = axes.plot([], [], "o", color=FLYING, markersize=size, markeredgewidth=0, zorder=4)
-        (self._lost,) = axes.plot([], [], "x", color=LOST, markersize=2 * size, markeredgewidth=size / 2, zorder=4)
+        (self._lost,) = axes.plot([], [], "x", color=ALARM, markersize=2 * size, markeredgewidth=size / 2, zorder=4)
 
     def show(self, number: int, points: Array) -> list[Artist]:
         """Draw a picture.
@@ -51,7 +51,7 @@ class FilmTalk:
             points: where the robots are (m), shape (N or more, 2).
         """
         lines = points[self._ends]
-        aside = ASIDE * np.stack(turned(lines[:, 1] - lines[:, 0]), axis=-1)
+        aside = ASIDE * turned_left(lines[:, 1] - lines[:, 0])
         alive = self._alive[number]
         self._lines.set_segments(list(lines + aside[:, None]))
         self._lines.set_color([CHANNEL if hears else SILENT for hears in alive] or "none")
@@ -62,8 +62,3 @@ class FilmTalk:
         self._flying.set_data(*places[~seen.lost].T)
         self._lost.set_data(*places[seen.lost].T)
         return [self._lines, self._flying, self._lost]
-
-
-def turned(vectors: Array) -> tuple[Array, Array]:
-    """Vectors of shape (…, 2) a quarter turn to the left, as x and y."""
-    return -vectors[..., 1], vectors[..., 0]

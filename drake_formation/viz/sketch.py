@@ -8,13 +8,15 @@ from matplotlib.patches import Circle, FancyArrowPatch
 from numpy.typing import NDArray
 
 from drake_formation.formation.formation import Formation
+from drake_formation.viz.figures.looks import look
 from drake_formation.viz.obstacles import OBSTACLE_COLOUR, grown
 from drake_formation.viz.outline import rigid_outline
+from drake_formation.viz.palette import CHANNEL
 
 Array = NDArray[np.float64]
 
-SPRING_COLOUR, CHANNEL_COLOUR, BODY_COLOUR = "0.45", "tab:purple", "0.88"
-WIDTH, LOWEST, HIGHEST = 11.0, 3.0, 8.0
+SPRING_COLOUR, BODY_COLOUR = "0.45", "0.88"
+WIDTH, LOWEST, HIGHEST = 11.0, 3.8, 8.0
 """Of the figure (inches)."""
 
 MOST_NAMED = 30
@@ -43,8 +45,10 @@ def _draw_way(axes: Axes, formation: Formation, gathered: Array) -> None:
     """Robots at their starts, at the slots where they gather if they do, and at the goal."""
     if formation.has_body:
         axes.fill(*(formation.centre + rigid_outline(formation)).T, color=BODY_COLOUR, label="object")
-    for start, slot, end in zip(formation.starts, gathered, formation.goal + formation.slots, strict=True):
-        colour = axes.plot(*np.stack([slot, end]).T, "-", linewidth=0.6, alpha=0.5)[0].get_color()
+    ways = zip(formation.starts, gathered, formation.goal + formation.slots, strict=True)
+    for robot, (start, slot, end) in enumerate(ways, start=1):
+        colour = look(robot).colour
+        axes.plot(*np.stack([slot, end]).T, "-", color=colour, linewidth=0.6, alpha=0.5)
         axes.plot(*np.stack([start, slot]).T, ":", color=colour, linewidth=0.9)
         axes.plot(*start, "s", color=colour, markersize=5)
         axes.plot(*slot, "o", color=colour, markersize=6, markeredgecolor="white")
@@ -71,16 +75,17 @@ def _draw_links(axes: Axes, formation: Formation) -> None:
                 shrinkA=6,
                 shrinkB=6,
                 mutation_scale=7,
-                color=CHANNEL_COLOUR,
+                color=CHANNEL,
                 linewidth=0.7,
                 alpha=0.7,
                 zorder=1,
             )
         )
     if len(formation.channels.pairs):
-        axes.plot([], [], color=CHANNEL_COLOUR, linewidth=0.8, label="channel, to the robot that hears")
+        axes.plot([], [], color=CHANNEL, linewidth=0.8, label="channel, to the robot that hears")
     for number, (slot, radius) in enumerate(zip(slots, formation.footprints.tolist(), strict=True), start=1):
-        colour = axes.plot(*slot, "o", markersize=9)[0].get_color()
+        colour = look(number).colour
+        axes.plot(*slot, "o", color=colour, markersize=9)
         axes.add_patch(Circle((float(slot[0]), float(slot[1])), radius, color=colour, alpha=0.2, linewidth=0))
         if formation.robots <= MOST_NAMED:
             axes.annotate(str(number), slot, ha="center", va="center", fontsize=6, color="white")
@@ -89,7 +94,6 @@ def _draw_links(axes: Axes, formation: Formation) -> None:
 
 def _draw_obstacles(axes: Axes, formation: Formation) -> None:
     """Obstacles where they are at first, their range, and where those that move end up."""
-    reach = max(float(getattr(part.config, "range", 0.0)) for part in formation.parts["avoidance"])
     for k, obstacle in enumerate(formation.obstacles):
         vertices, first = obstacle.outline(formation.begin), k == 0
         if len(vertices) == 1:  # also one without extent is to be seen
@@ -97,9 +101,10 @@ def _draw_obstacles(axes: Axes, formation: Formation) -> None:
         shape = grown(vertices, obstacle.radius, color=OBSTACLE_COLOUR, alpha=0.5)
         shape.set_label("obstacle" if first else "")
         axes.add_patch(shape)
-        if reach:
-            around = obstacle.radius + reach + float(formation.footprints.max(initial=0.0))
-            range_ = grown(vertices, around, fill=False, linestyle="--", edgecolor="0.5")
+        if formation.felt_within:
+            range_ = grown(
+                vertices, obstacle.radius + formation.felt_within, fill=False, linestyle="--", edgecolor="0.5"
+            )
             range_.set_label("range in which it is felt" if first else "")
             axes.add_patch(range_)
         if len(obstacle.motion):

@@ -13,7 +13,7 @@ from pydrake.trajectories import PiecewisePolynomial
 
 from drake_formation.formation.obstacles import Obstacles
 from drake_formation.parts.references.waypoints import chord_shares, waypoint_trajectory
-from drake_formation.vectors import least_from_segment
+from drake_formation.vectors import least_from_segment, turned_left
 
 Array = NDArray[np.float64]
 
@@ -92,7 +92,7 @@ def plan(start: ArrayLike, field: PotentialField) -> Array:
     if np.array_equal(begin, field.goal):
         return np.array([begin, field.goal])
     way = field.goal - begin
-    point = begin + 1e-3 * field.clearance * np.array([-way[1], way[0]]) / np.linalg.norm(way)
+    point = begin + 1e-3 * field.clearance * turned_left(way) / np.linalg.norm(way)
     path, lowest, wasted = [begin], np.inf, 0
     for _ in range(MOST_STEPS):
         # Outside all reaches the flow is straight: one step leads to the next of them.

@@ -5,15 +5,16 @@ import heapq
 import numpy as np
 from pydrake.geometry import Meshcat, Rgba, Sphere
 
+from drake_formation.viz import palette
 from drake_formation.viz.packets import Packets, packets_of, thinned
 from drake_formation.viz.playback import Playback
-from drake_formation.viz.view.solids import TALKING_HEIGHT, Colour
+from drake_formation.viz.view.solids import TALKING_HEIGHT, Colour, opaque
 
 MOST, AT_ONCE = 3000, 120
 """Packets that are drawn, and balls for them."""
 
-FLYING: Colour = (0.0, 0.33, 0.24, 1.0)
-LOST: Colour = (0.80, 0.0, 0.10, 1.0)
+FLYING: Colour = opaque(palette.FLYING)
+LOST: Colour = opaque(palette.ALARM)
 RADII = {False: 0.04, True: 0.055}
 """Of balls, and of those that are lost (m)."""
 

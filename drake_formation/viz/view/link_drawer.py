@@ -12,15 +12,16 @@ from pydrake.geometry import Cylinder, Meshcat, MeshcatCone, Rgba
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.systems.framework import Context, LeafSystem
 
+from drake_formation.viz import palette
 from drake_formation.viz.links import AT_REST, Link, strain_colour, strains
-from drake_formation.viz.view.solids import CARRYING_HEIGHT, TALKING_HEIGHT, Colour
+from drake_formation.viz.view.solids import CARRYING_HEIGHT, TALKING_HEIGHT, Colour, opaque
 
 SPRING_RADIUS, NEEDLE_RADIUS = 0.025, 0.03
 SHORTEST = 1e-3
 """A link is drawn at least as long (m): what has no length has no direction."""
 
-CHANNEL: Colour = (0.0, 0.62, 0.45, 0.55)
-SILENT, THIN = (0.25, 0.25, 0.25), 0.3
+CHANNEL: Colour = opaque(palette.CHANNEL, 0.55)
+SILENT, THIN = opaque(palette.SILENT)[:3], 0.3
 """Colour of a channel over which nothing new is heard, and its width as a share of others'."""
 
 

@@ -8,9 +8,10 @@ from pydrake.geometry import Box, Cylinder, Meshcat, Rgba, Sphere
 from pydrake.math import RigidTransform, RotationMatrix
 
 from drake_formation.simulation.events import HAND_OFF, Event
+from drake_formation.viz import palette
 from drake_formation.viz.playback import Playback
 from drake_formation.viz.view.robots import RADIUS
-from drake_formation.viz.view.solids import CARRYING_HEIGHT, TALKING_HEIGHT, Colour, Solid
+from drake_formation.viz.view.solids import CARRYING_HEIGHT, TALKING_HEIGHT, Colour, Solid, opaque
 
 Array = NDArray[np.float64]
 
@@ -20,7 +21,7 @@ MOST = 100
 RATE = 64
 """How often it is looked at what has changed (1/s)."""
 
-ALARM: Colour = (0.80, 0.0, 0.10, 1.0)
+ALARM: Colour = opaque(palette.ALARM)
 HAND: Colour = (0.85, 0.62, 0.0, 1.0)
 PIN = 0.9
 """Height of a pin (m)."""

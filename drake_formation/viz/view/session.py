@@ -2,12 +2,12 @@
 
 import time
 from collections.abc import Callable
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from pydrake.geometry import Meshcat
 
 from drake_formation.config.errors import ScenarioError
-from drake_formation.lowering.errors import LoweringError
 from drake_formation.scenario import Scenario
 from drake_formation.simulation import PreparedRun, SimulationError
 from drake_formation.simulation.result import labelled_result, series_of
@@ -44,7 +44,6 @@ class Session:
     ) -> None:
         self._meshcat, self._follow, self._tell = meshcat, follow, tell
         self._scenario: Scenario = series_of(result).scenario
-        self._prepared: PreparedRun | None = None
         self._playback = record(result, meshcat, follow=follow)
         self._start: dict[Knob, float] = {}
         for knob in KNOBS:
@@ -68,7 +67,7 @@ class Session:
         places = {knob: self._meshcat.GetSliderValue(knob.label) for knob in self._start}
         try:
             scenario = changed(self._scenario, places, self._start)
-            series = self._made_ready().run(scenario)
+            series = self._prepared.run(scenario)
         except (ScenarioError, SimulationError) as error:
             self._tell(str(error))
             return
@@ -84,11 +83,7 @@ class Session:
         if len(packets := drawn_packets(self._playback)):
             self._tell(f"Of packets {share(packets)}.")
 
-    def _made_ready(self) -> PreparedRun:
-        """The diagram compiled, once for all runs; or as the scenario runs best, where it cannot be."""
-        if self._prepared is None:
-            try:
-                self._prepared = PreparedRun(self._scenario, engine="compiled")
-            except (LoweringError, ScenarioError):
-                self._prepared = PreparedRun(self._scenario)
-        return self._prepared
+    @cached_property
+    def _prepared(self) -> PreparedRun:
+        """The diagram made ready, once for all runs."""
+        return PreparedRun.compiled(self._scenario)

@@ -2,11 +2,18 @@
 
 from dataclasses import dataclass, field
 
+from matplotlib.colors import to_rgba
 from pydrake.geometry import Shape
 from pydrake.math import RigidTransform
 
 Colour = tuple[float, float, float, float]
 """Red, green, blue and how opaque, from 0 to 1."""
+
+
+def opaque(colour: str, share: float = 1.0) -> Colour:
+    """A colour of :mod:`drake_formation.viz.palette`, and how opaque it is."""
+    return to_rgba(colour, share)
+
 
 DARK: Colour = (0.2, 0.2, 0.22, 1.0)
 

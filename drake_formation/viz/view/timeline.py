@@ -3,14 +3,15 @@
 from collections.abc import Iterator
 from html import escape
 
+from drake_formation.viz.palette import ALARM
 from drake_formation.viz.playback import Playback
 
 STYLE = """
 #timeline { position: relative; height: 14px; margin: .4em 0 .2em; background: #ddd; cursor: pointer }
-#timeline i { position: absolute; top: 0; width: 3px; margin-left: -1px; height: 100%; background: #cc001a }
+#timeline i { position: absolute; top: 0; width: 3px; margin-left: -1px; height: 100%; background: ALARM }
 #timeline i[data-kind=hand_off] { background: #333 }
 #now { position: absolute; top: -3px; width: 2px; margin-left: -1px; bottom: -3px; background: #0060c0 }
-"""
+""".replace("ALARM", ALARM)
 
 BODY = """<div id="timeline">{marks}<span id="now"></span></div><div id="happened">&nbsp;</div>"""
 

@@ -14,7 +14,7 @@ from drake_formation import load_scenario, simulate
 from drake_formation.simulation import PreparedRun
 from drake_formation.viz.figures import robot_colours
 from drake_formation.viz.playback import Playback
-from drake_formation.viz.view import session, write_page
+from drake_formation.viz.view import write_page
 from drake_formation.viz.view.flights import drawn_packets
 from drake_formation.viz.view.frames import TOLERANCE
 from drake_formation.viz.view.knobs import KNOBS
@@ -166,7 +166,7 @@ def test_sliders_act_on_the_next_run(view, cli, monkeypatch):
     other = simulate(load_scenario("line", overrides=SHORT | {"consensus.delta": 400.0}), engine="blocks")
     expected = other.position.interp(time=1.0).sel(robot=1)
     blocks = partial(PreparedRun, engine="blocks")  # compiling the line takes longer than all else here
-    monkeypatch.setattr(session, "PreparedRun", lambda scenario, **_: blocks(scenario))
+    monkeypatch.setattr(PreparedRun, "compiled", staticmethod(blocks))
     with ThreadPoolExecutor() as aside:
         at_work = []
         monkeypatch.setattr(webbrowser, "open", lambda url: at_work.append(aside.submit(slid, view, url, expected)))

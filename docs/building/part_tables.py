@@ -15,7 +15,8 @@ def parts_page(root: Path) -> str:
     parts = [
         "# The parts",
         "Every box of the diagram is a part: a role, which has ports, filled by one of several kinds, which a scenario "
-        "chooses. What each may be given is in [the scenario](scenario.md); `drake-formation parts` prints this list.",
+        "chooses. What each may be given is in [the scenario](scenario.md); "
+        "`drake-formation list parts` prints this list.",
     ]
     for name, role in ROLES.items():
         section = ".".join(map(str, role.section))

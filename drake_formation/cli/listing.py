@@ -45,7 +45,7 @@ def show(what: What, names: Sequence[str]) -> None:
         what: of which kind.
         names: which of them; all if empty.
     """
-    from drake_formation.config.errors import nearest
+    from drake_formation.config.errors import did_you_mean
     from drake_formation.terminal.tables import table
 
     rows, remarks = _ROWS[what](), []
@@ -53,9 +53,7 @@ def show(what: What, names: Sequence[str]) -> None:
     known = {str(row[key]): None for row in rows}
     for name in names:
         if name not in known:
-            meant = nearest(name, known)
-            suggestion = f"; did you mean {meant!r}?" if meant else ""
-            stop(f"there is no {what.value.removesuffix('s')} {name!r}{suggestion}", WRONG_INPUT)
+            stop(f"there is no {what.value.removesuffix('s')} {name!r}{did_you_mean(name, known)}", WRONG_INPUT)
     rows = [row for row in rows if not names or row[key] in names]
     if what is What.PARTS:
         remarks = _broken()

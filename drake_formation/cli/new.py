@@ -22,7 +22,7 @@ def new(
     ] = None,
 ) -> None:
     """Write a scenario to start from, every field explained, to NAME.yaml; what is there is never overwritten."""
-    from drake_formation.config.errors import nearest
+    from drake_formation.config.errors import did_you_mean
     from drake_formation.places import reason
     from drake_formation.scenario.starter import renamed, starter
     from drake_formation.shipped import shipped
@@ -30,8 +30,7 @@ def new(
     file = name if name.suffix in (".yaml", ".yml") else Path(f"{name}.yaml")
     known = shipped("scenario")
     if base is not None and base not in known:
-        meant = nearest(base, known)
-        suggestion = f"; did you mean {meant!r}?" if meant else f"; there are {', '.join(known)}"
+        suggestion = did_you_mean(base, known) or f"; there are {', '.join(known)}"
         stop(f"--from {base}: no scenario of this name ships{suggestion}", WRONG_INPUT)
     text = starter(file.stem) if base is None else renamed(base, file.stem)
     try:

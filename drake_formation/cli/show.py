@@ -25,7 +25,8 @@ def show(
     open_it: Annotated[bool, typer.Option("--open", help="Open the picture too.")] = False,
 ) -> None:
     """Draw a scenario without running it: start, slots and goal, springs and channels, obstacles and their range."""
-    from drake_formation.places import OutputError, reason, reserved_file
+    from drake_formation.places import OutputError, reserved_file
+    from drake_formation.places.errors import explained
     from drake_formation.scenario import load_scenario, resolve
     from drake_formation.viz.sketch import sketch
     from drake_formation.viz.style import draw
@@ -34,13 +35,12 @@ def show(
     file = output or Path(f"{loaded.name}.png")
     if file.suffix not in FORMATS:
         stop(f"cannot draw {file.name}: the name must end in {', '.join(FORMATS)}", WRONG_INPUT)
+    formation = resolve(loaded)
     try:
-        with reserved_file(file) as partial:
-            draw(lambda: sketch(resolve(loaded)), partial)
+        with reserved_file(file) as partial, explained(file):
+            draw(lambda: sketch(formation), partial)
     except OutputError as error:
         stop(str(error), WRONG_INPUT)
-    except OSError as error:
-        stop(f"{file}: cannot be written: {reason(error)}", WRONG_INPUT)
     report({"scenario": loaded.name, "file": file}, f"The scenario is drawn in {file}.")
     if open_it:
         typer.launch(str(file))

@@ -111,6 +111,12 @@ def nearest(name: object, names: Iterable[str]) -> str:
     return next(iter(difflib.get_close_matches(name, known, n=1)), "")
 
 
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """The end of a message about a name that nobody knows: the one that was meant, if there is one like it."""
+    meant = nearest(name, known)
+    return f"; did you mean {meant!r}?" if meant else ""
+
+
 def shown(value: Any) -> str:
     """A value in YAML's flow style, shortened."""
     return shortened(_flow(value, _DEEPEST))

@@ -1,5 +1,7 @@
 """Figures 4-18 and 23 of the paper, redrawn from our runs; transports as probably simulated."""
 
+from collections.abc import Callable
+
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -11,6 +13,7 @@ from drake_formation.vectors import length
 from drake_formation.viz.figures import robot_looks
 from drake_formation.viz.figures.envelope import draw_band, windows
 from drake_formation.viz.figures.looks import COLOURS as PALETTE
+from drake_formation.viz.figures.looks import Look
 from drake_formation.viz.figures.panels import INCH, WIDTHS, legend
 
 STYLES = dict(zip(GAINS, ("-", "--", ":"), strict=True))
@@ -19,6 +22,8 @@ PAGE = WIDTHS["page"] / INCH
 """Width of the figures (inches)."""
 FARTHEST = r"largest $\|e_i\|$"
 """What the consensus error is in figures: that of the robot farthest off."""
+Draw = Callable[[Axes, xr.Dataset, xr.DataArray, Look, str], None]
+"""Draws a robot's line from a run and its values, with a look and a label."""
 
 
 def aggregation_paths(formation: str, store: Store) -> Figure:
@@ -38,21 +43,12 @@ def aggregation_paths(formation: str, store: Store) -> Figure:
 
 def aggregation_positions(formation: str, store: Store) -> Figure:
     """Positions in time for three consensus gains (Figs. 5 and 13)."""
-    figure = Figure(figsize=(PAGE, 0.6 * PAGE), layout="constrained")
-    panels = figure.subplots(2, len(AGGREGATION_GAINS), sharex=True, sharey="row")
-    for column, delta in enumerate(AGGREGATION_GAINS):
-        gathering = phase(store[aggregation(formation, delta)], 0)
-        for row, axis in enumerate(("x", "y")):
-            axes = panels[row, column]
-            for robot, its in robot_looks(gathering).items():
-                position = gathering["position"].sel(robot=robot, axis=axis)
-                axes.plot(gathering["time"], position, color=its.colour, linestyle=its.dashes, label=f"robot {robot}")
-        panels[0, column].set_title(f"δ = {delta:g} N/m")
-        panels[1, column].set_xlabel("time $t$ (s)")
-    panels[0, 0].set_ylabel("$x$ (m)")
-    panels[1, 0].set_ylabel("$y$ (m)")
-    legend(panels[0, -1])
-    return figure
+
+    def draw(axes: Axes, gathering: xr.Dataset, position: xr.DataArray, its: Look, label: str) -> None:
+        axes.plot(gathering["time"], position, color=its.colour, linestyle=its.dashes, label=label)
+
+    runs = {f"δ = {delta:g} N/m": phase(store[aggregation(formation, delta)], 0) for delta in AGGREGATION_GAINS}
+    return _by_axis("position", runs, ("$x$ (m)", "$y$ (m)"), "time $t$ (s)", draw, height=0.6)
 
 
 def aggregation_errors(formation: str, store: Store) -> Figure:
@@ -67,18 +63,38 @@ def aggregation_errors(formation: str, store: Store) -> Figure:
 
 def velocities(formation: str, store: Store) -> Figure:
     """Velocities of the robots at δ = 0 for both materials (Figs. 8 and 16)."""
-    figure = Figure(figsize=(PAGE, 0.55 * PAGE), layout="constrained")
-    panels = figure.subplots(2, len(MATERIALS), sharex=True, sharey="row")
-    for column, material in enumerate(MATERIALS):
-        carried = phase(store[PROBABLE.transport(formation, material, 0.0)], 1)
+
+    def draw(axes: Axes, carried: xr.Dataset, velocity: xr.DataArray, its: Look, label: str) -> None:
+        draw_band(axes, since_hand_off(carried), velocity, its.colour, its.dashes, label)
+
+    runs = {f"{kind}, δ = 0": phase(store[PROBABLE.transport(formation, kind, 0.0)], 1) for kind in MATERIALS}
+    labels = ("$v_x$ (m/s)", "$v_y$ (m/s)")
+    return _by_axis("velocity", runs, labels, "time since hand-off $t$ (s)", draw, height=0.55)
+
+
+def _by_axis(
+    name: str, runs: dict[str, xr.Dataset], labels: tuple[str, str], time: str, draw: Draw, *, height: float
+) -> Figure:
+    """What every robot has along x and, below it, along y; a column a run.
+
+    Args:
+        name: of the variable.
+        runs: by their titles.
+        labels: of the two rows.
+        time: what the time's axis is called.
+        draw: draws one robot's line.
+        height: of the figure, as a share of its width.
+    """
+    figure = Figure(figsize=(PAGE, height * PAGE), layout="constrained")
+    panels = figure.subplots(2, len(runs), sharex=True, sharey="row")
+    for column, (title, result) in enumerate(runs.items()):
         for row, axis in enumerate(("x", "y")):
-            axes = panels[row, column]
-            for robot, its in robot_looks(carried).items():
-                velocity = carried["velocity"].sel(robot=robot, axis=axis)
-                draw_band(axes, since_hand_off(carried), velocity, its.colour, its.dashes, f"robot {robot}")
-            axes.set_ylabel(f"$v_{axis}$ (m/s)" if column == 0 else "")
-        panels[0, column].set_title(f"{material}, δ = 0")
-        panels[1, column].set_xlabel("time since hand-off $t$ (s)")
+            for robot, its in robot_looks(result).items():
+                values = result[name].sel(robot=robot, axis=axis)
+                draw(panels[row, column], result, values, its, f"robot {robot}")
+            panels[row, 0].set_ylabel(labels[row])
+        panels[0, column].set_title(title)
+        panels[1, column].set_xlabel(time)
     legend(panels[0, -1])
     return figure
 

@@ -22,8 +22,7 @@ MARGIN = 1e-3
 
 def gain(_store: Store) -> Claim:
     """Sec. 5.1: K_l."""
-    block = find_block(build_diagram(load_scenario("line")), "robot_1/tracking")
-    ours = block.CreateDefaultContext().get_numeric_parameter(0).CopyToVector().reshape(2, 4)
+    ours = _tracking_gain()
     printed = published()["lqr"]["K_l"]
     error = float(np.abs(ours - printed).max())
     return Claim(
@@ -34,12 +33,17 @@ def gain(_store: Store) -> Claim:
     )
 
 
+def _tracking_gain() -> NDArray[np.float64]:
+    """K_l of the line's first robot, as its block has it, shape (2, 4)."""
+    block = find_block(build_diagram(load_scenario("line")), "robot_1/tracking")
+    gain: NDArray[np.float64] = block.CreateDefaultContext().get_numeric_parameter(0).CopyToVector().reshape(2, 4)
+    return gain
+
+
 def theorem_1(_store: Store) -> Claim:
     """Theorem 1 on the matrices of the diagram."""
-    block = find_block(build_diagram(load_scenario("line")), "robot_1/tracking")
-    k = block.CreateDefaultContext().get_numeric_parameter(0).CopyToVector().reshape(2, 4)
     a, b = robot_matrices(published()["robot_mass_kg"])
-    slowest = float(np.linalg.eigvals(a - b @ k).real.max())
+    slowest = float(np.linalg.eigvals(a - b @ _tracking_gain()).real.max())
     return Claim(
         claim="Theorem 1: the local tracking error is asymptotically stable",
         verdict=HOLDS if slowest < 0 else FAILS,
